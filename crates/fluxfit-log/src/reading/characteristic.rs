@@ -11,7 +11,7 @@ use super::{
     mapping::Park,
     options::LogOptions,
     proposal::propose,
-    resemblance::words,
+    resemblance::{fit, words},
     steady_points,
     steady_test::{self, ReadCharacteristic},
     table::Table,
@@ -144,6 +144,20 @@ fn is_of_log(head: &ColumnHead) -> bool {
         || [Channel::Id, Channel::Iq].into_iter().any(|axis| is_axis(axis, head))
 }
 
+/// Whether of what a log has there is only its time, with its speed and its DC voltage: thrust stands and dynamometers record a time beside
+/// each point of a curve.
+fn is_time_alone(heads: &[ColumnHead]) -> bool {
+    let of_curve = [Channel::T, Channel::OmegaE, Channel::UDc];
+    let is_other = |head: &ColumnHead| {
+        // The letter of `Current (A)` is no phase.
+        let bare = head.name.split(['[', '(']).next().unwrap_or_default();
+        let others = || Channel::all().filter(|channel| !of_curve.contains(channel));
+        others().any(|channel| super::alias::is_alias(channel, head) || fit(channel, bare).is_some())
+    };
+    let is_instant = |head: &ColumnHead| head.is_time || head.instants.is_some() || super::alias::is_alias(Channel::T, head);
+    heads.iter().any(is_instant) && !heads.iter().any(is_other)
+}
+
 fn read_columns(table: &mut Table, columns: Vec<Found>, stated: &Stated) -> Result<Option<ReadCharacteristic>, FileError> {
     let heads = table.heads().to_vec();
     let pole_pairs = stated.pole_pairs;
@@ -154,12 +168,15 @@ fn read_columns(table: &mut Table, columns: Vec<Found>, stated: &Stated) -> Resu
     // What the user says is no matter of the other names.
     if stated.map.is_empty() {
         let names: Vec<String> = heads.iter().map(|head| head.name.clone()).collect();
-        if heads.iter().any(is_of_log) || NotALog::by_names(&names).is_some() {
+        if heads.iter().any(is_of_log) && !is_time_alone(&heads) || NotALog::by_names(&names).is_some() {
             return Ok(None);
         }
         if let Some(driven) = driven(&heads, &columns) {
             let is_curve = has(Quantity::Speed) && has(Quantity::Torque) && turns_and_pulls(table, &columns);
             return if is_curve { Err(load_curve(&columns, driven.name.trim())) } else { Ok(None) };
+        }
+        if heads.iter().any(is_of_log) {
+            return Ok(None);
         }
     } else if stated.maps(&[Quantity::Torque])
         && !stated.maps(&[Quantity::Voltage])
@@ -496,6 +513,12 @@ mod tests {
     fn the_curve_of_a_driven_motor_is_named() {
         let error = of("Speed (RPM),Torque (Nm),Current (A),Supplied Power (W)\n1,2,3,4\n2,2,3,4\n").unwrap_err().to_string();
         assert!(error.contains("a motor that drives a load"), "{error}");
+        // As a thrust stand records it, beside its time; with the currents of phases it may be a log.
+        let of_stand =
+            "Time (s),Motor Electrical Speed (RPM),Torque (N·m),Voltage (V),Current (A),Electrical Power (W)\n0,1,2,3,4,5\n1,2,3,3,4,5\n";
+        let error = of(of_stand).unwrap_err().to_string();
+        assert!(error.contains("a motor that drives a load"), "{error}");
+        assert_eq!(of("Time (s),Speed (RPM),Torque (Nm),Ia (A),Ib (A),Power (W)\n0,1,2,3,4,5\n1,2,3,3,4,5\n"), Ok(None));
         // One row, or rows of zeros, are no curve.
         for rows in ["1,2,3,4\n", "0,0,0,0\n0,0,0,0\n"] {
             let text: String = format!("Speed (RPM),Torque (Nm),Current (A),Supplied Power (W)\n{rows}");
