@@ -128,6 +128,7 @@ fn cells(line: &str, separator: u8, rows: RowStyle) -> Vec<String> {
 }
 
 fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
+    let of_rows = separator_of_rows(text);
     let mut comments = Vec::new();
     let mut stated_separator = None;
     let mut titles = Vec::new();
@@ -140,7 +141,7 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
         } else if let Some(separator) = separator_line(line) {
             stated_separator = Some(separator);
         } else if !trimmed.trim_matches([',', ';', ' ', '\t']).is_empty() {
-            if titles.len() < TITLES && is_title(text, start, line) {
+            if titles.len() < TITLES && is_title(text, start, line, of_rows) {
                 titles.push(quote(trimmed));
                 continue;
             }
@@ -165,7 +166,7 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
             body: start + first.len(),
             body_line: 0,
         },
-        _ => at(text, start, stated_separator.unwrap_or_else(|| most_frequent_separator(first))),
+        _ => at(text, start, stated_separator.or(of_rows).unwrap_or_else(|| most_frequent_separator(first))),
     };
     let is_value = |name: &String| is_number(name.trim_end_matches(';'));
     // Settings of an oscilloscope beside its first samples: columns may be called 1 and 2, but not 0.5.
@@ -242,12 +243,13 @@ fn from_comments(text: &str, comments: &[(usize, &str)], body: usize, first: Hea
 /// Whether a line is a title, a timestamp or a line of information above the header: it has one cell, and some line below has more; or it
 /// begins with a digit, and the next line has more cells; or it has at most half as many cells as the first row of numbers below; or it has
 /// empty cells, and a line below has fewer and is no row of numbers either; or it is a remark above each name; or it belongs to a preamble.
-fn is_title(text: &str, start: usize, line: &str) -> bool {
-    let header = at(text, start, most_frequent_separator(line));
+fn is_title(text: &str, start: usize, line: &str, of_rows: Option<u8>) -> bool {
+    let separator = |line: &str| of_rows.unwrap_or_else(|| most_frequent_separator(line));
+    let header = at(text, start, separator(line));
     let cells = header.names.len();
     let dated = header.names.first().is_some_and(|name| name.starts_with(|c: char| c.is_ascii_digit()) && !is_number(name));
     let below = || lines(&text[header.body..]).filter(|(_, line)| !line.trim().is_empty());
-    let cells_of = |line: &str| record::first_record(line, most_frequent_separator(line)).0;
+    let cells_of = |line: &str| record::first_record(line, separator(line)).0;
     let is_above_names = || header.names.iter().any(String::is_empty) && is_above_names(&header, text);
     if cells > 1 && is_above_names() {
         return true;
@@ -255,7 +257,7 @@ fn is_title(text: &str, start: usize, line: &str) -> bool {
     if cells > 1 && !dated {
         let is_row = |cells: &Vec<String>| cells.len() > 1 && cells.iter().filter(|cell| is_number(cell)).count() * 2 > cells.len();
         let row = below().take(TITLES).map(|(_, line)| cells_of(line)).find(is_row);
-        return row.is_some_and(|row| 2 * cells <= row.len()) || are_remarks(&header, text) || is_preamble(&header, text);
+        return row.is_some_and(|row| 2 * cells <= row.len()) || are_remarks(&header, text) || is_preamble(&header, text, separator);
     }
     let mut below = below().map(|(_, line)| cells_of(line));
     let Some(next) = below.next() else { return false };
@@ -286,12 +288,12 @@ fn are_remarks(line: &Header, text: &str) -> bool {
 
 /// Whether a line belongs to a preamble: above the rows of numbers another line has as many names as these have cells, and this one has
 /// not, or it has only their units.
-fn is_preamble(line: &Header, text: &str) -> bool {
+fn is_preamble(line: &Header, text: &str, separator: impl Fn(&str) -> u8) -> bool {
     let cells: Vec<Vec<String>> = lines(&text[line.body..])
         .map(|(_, below)| below.trim())
         .filter(|below| !below.is_empty() && !below.starts_with(['#', '%']))
         .take(TITLES)
-        .map(|below| record::first_record(below, most_frequent_separator(below)).0)
+        .map(|below| record::first_record(below, separator(below)).0)
         .collect();
     let numbers = |cells: &[String]| cells.iter().filter(|cell| is_number(cell)).count();
     let filled = |cells: &[String]| cells.iter().filter(|cell| !cell.is_empty()).count();
@@ -340,6 +342,30 @@ fn separator_line(line: &str) -> Option<u8> {
         "," | ";" | "\t" => mark.bytes().next(),
         _ => None,
     }
+}
+
+/// Lines that are looked at for the separator, and the part of them at the end that tells it: above are titles and names.
+const LINES: usize = 80;
+const LAST: usize = 4;
+
+/// The separator that the rows of numbers show, if it is none that a number has: where decimal commas are in every cell, commas are more
+/// frequent, and names have them, too.
+fn separator_of_rows(text: &str) -> Option<u8> {
+    let lines: Vec<&str> = lines(text)
+        .map(|(_, line)| line.trim_end_matches(['\r', '\n']))
+        .filter(|line| !line.trim().is_empty() && !line.starts_with(['#', '%']))
+        .take(LINES)
+        .collect();
+    // The last one may be cut.
+    let end = lines.len() - usize::from(lines.len() > 2);
+    let rows = &lines[end - end.div_ceil(LAST)..end];
+    let is_row = |line: &str, separator: u8| {
+        let (cells, _) = record::first_record(line, separator);
+        let filled = cells.iter().filter(|cell| !cell.is_empty()).count();
+        filled > 1 && 2 * cells.iter().filter(|cell| is_number(cell)).count() > filled
+    };
+    let shows = |separator: &u8| !rows.is_empty() && rows.iter().all(|line| is_row(line, *separator));
+    [b'\t', b';'].into_iter().find(shows)
 }
 
 /// The most frequent separator outside of quotes. On a tie the semicolon, which is rare in other roles, then the comma: tabs may only
@@ -470,6 +496,28 @@ mod tests {
         let header = find("  t    ud   uq\n 0.0  1.0 -2.0\n", &mut Vec::new()).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!((header.names.join(","), header.rows, header.body), ("t,ud,uq".to_owned(), RowStyle::Aligned, 15));
         assert!(find("one title of words\n", &mut Vec::new()).is_err());
+    }
+
+    /// As German spreadsheets and drives write tables: every cell has a comma, and so may the names.
+    #[test]
+    fn rows_tell_the_separator() {
+        let names = || vec!["Zeit [s]".to_owned(), "P-44, Strom, Ist".to_owned(), "n".to_owned()];
+        let rows = "0,00;1,25;2,50\n0,01;1,26;-2,51\n0,02;1,27;2,52\n";
+        for above in [
+            "",
+            "Titel;x\n",
+            "Titel\nDatum 12.1.\n",
+            "Oszilloskop;Lenze\nRate [us];100\nTrigger;0\n\n",
+            "\"Trace\";\"S120\"\n\"Datum\";\"14.07.2023\"\n",
+        ] {
+            for separator in [';', '\t'] {
+                let text = format!("{above}Zeit [s];P-44, Strom, Ist;n\n{rows}").replace(';', &separator.to_string());
+                let found = found(&text);
+                assert_eq!((found.0, char::from(found.2)), (names(), separator), "{text}");
+            }
+        }
+        // A mark at the end of a row separates nothing.
+        assert_eq!(found("a,b\n1,2;\n3,4;\n5,6;\n").2, b',');
     }
 
     #[test]
