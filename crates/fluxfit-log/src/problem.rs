@@ -130,6 +130,10 @@ pub(crate) enum Problem {
         /// What writes speeds of this name, and their unit there.
         usual: Option<(&'static str, Unit)>,
     },
+    #[error("nothing states the unit of this electrical speed; state it: rad/s, rpm-elec or Hz-elec")]
+    ElectricalSpeedUnit,
+    #[error("{tool} writes this current in {}; state the unit, also if it is A", .unit.prose())]
+    UnitOfTool { channel: &'static str, tool: &'static str, unit: Unit },
     #[error("this speed is in {}, and nothing states whether it is electrical or that of the shaft; state which", .electrical.prose().trim_start_matches("electrical "))]
     SpeedRotation { electrical: Unit, mechanical: Unit, has_pole_pairs: bool },
     #[error(
@@ -348,6 +352,8 @@ impl Problem {
             | Self::Share { .. }
             | Self::PolePairs { .. }
             | Self::SpeedUnit { .. }
+            | Self::ElectricalSpeedUnit
+            | Self::UnitOfTool { .. }
             | Self::SpeedRotation { .. }
             | Self::TimeUnit { .. } => FileErrorKind::Unit,
             Self::RoundedTime { .. } => FileErrorKind::Data,
@@ -424,6 +430,10 @@ impl Problem {
                 let first = Advice::Together(std::iter::once(first).chain(pole_pairs).collect());
                 std::iter::once(first).chain(Some(electrical).filter(|_| !of_shaft)).collect()
             }
+            Self::ElectricalSpeedUnit => [Unit::RadianPerSecond, Unit::RpmElectrical, Unit::HertzElectrical]
+                .map(|unit| Advice::StateUnit { channel: "omega_e", unit: Some(unit.name()) })
+                .to_vec(),
+            Self::UnitOfTool { unit, .. } => ["id", "iq"].map(|channel| Advice::StateUnit { channel, unit: Some(unit.name()) }).to_vec(),
             Self::SpeedUnit { has_pole_pairs, .. } => vec![Advice::StateRotation {
                 channel: "omega_e",
                 electrical: Unit::RadianPerSecond.name(),

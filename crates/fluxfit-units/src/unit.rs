@@ -151,6 +151,32 @@ impl Unit {
         self.properties().0.ends_with("-mech")
     }
 
+    /// The electrical unit that corresponds to one of the shaft; `electrical rad/s` for all others.
+    pub fn electrical(self) -> Self {
+        match self {
+            Self::RpmMechanical => Self::RpmElectrical,
+            Self::KrpmMechanical => Self::KrpmElectrical,
+            Self::HertzMechanical => Self::HertzElectrical,
+            Self::DegreePerSecondMechanical => Self::DegreePerSecond,
+            Self::RadianMechanical => Self::Radian,
+            Self::DegreeMechanical => Self::Degree,
+            _ => Self::RadianPerSecond,
+        }
+    }
+
+    /// The unit of the shaft that corresponds to an electrical one; rad/s of the shaft for all others.
+    pub fn of_shaft(self) -> Self {
+        match self {
+            Self::RpmElectrical => Self::RpmMechanical,
+            Self::KrpmElectrical => Self::KrpmMechanical,
+            Self::HertzElectrical => Self::HertzMechanical,
+            Self::DegreePerSecond => Self::DegreePerSecondMechanical,
+            Self::Radian => Self::RadianMechanical,
+            Self::Degree => Self::DegreeMechanical,
+            _ => Self::RadianPerSecondMechanical,
+        }
+    }
+
     /// Whether it is that of a root mean square, which only vectors of the dq frame can be in: of these a value is the peak of the phases.
     pub fn is_rms(self) -> bool {
         matches!(self, Self::VoltRms | Self::AmpereRms)

@@ -69,7 +69,8 @@ impl Mat {
         let contents = if let Some(big_endian) = v5::signature(start) {
             v5::open(&source, big_endian)?
         } else if v4::signature(start, source.length()) {
-            v4::open(&source)?
+            let variables = v4::open(&source)?;
+            modelica::contents(&source, &variables)?.unwrap_or_else(|| v4::contents(variables))
         } else {
             return Ok(None);
         };

@@ -7,6 +7,7 @@ use super::{
 };
 use crate::{
     block::{ColumnHead, WantedColumn},
+    header_unit::states_electrical,
     problem::Problem,
     quantity::{Quantity, TableColumn},
     unclear_table::UnclearTable,
@@ -102,7 +103,12 @@ pub(super) fn found(index: usize, head: &ColumnHead) -> Option<Found> {
         Some(Found { index, header: header.clone(), described: described(head), quantity, has_unit, in_si, is_electrical, mapped: None })
     };
     match stated_unit(head) {
-        StatedUnit::Of(quantity, in_si, is_electrical) => return of(quantity, true, in_si, is_electrical),
+        StatedUnit::Of(quantity, in_si, is_electrical) => {
+            // A speed in Hz may be that of the shaft, or the frequency of the currents.
+            let in_hertz = is_electrical && in_si == Unit::HertzElectrical.in_si() && !states_electrical(&header);
+            let is_open = quantity == Quantity::Speed && in_hertz && has_word(head, &["speed", "velocity"]);
+            return of(quantity, !is_open, in_si, is_electrical);
+        }
         // Nothing to guess the size of.
         StatedUnit::Other => return None,
         StatedUnit::None => {}

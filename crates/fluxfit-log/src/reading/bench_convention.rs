@@ -41,6 +41,23 @@ pub(super) fn convention(column: &Found, quantity: Quantity, pole_pairs: Option<
     }
 }
 
+/// Ends of words that are amplitudes.
+const AMPLITUDES: [&str; 13] = [
+    "peak",
+    "pk",
+    "0p",
+    "amplitude",
+    "amplitudes",
+    "ampl",
+    "vamp",
+    "crest",
+    "spitze",
+    "spitzenspannung",
+    "scheitel",
+    "scheitelwert",
+    "峰值",
+];
+
 /// The rms value over what a column holds, what that is, and whether its name states it.
 fn to_rms(name: &str) -> (f64, &'static str, bool) {
     let words = words(name);
@@ -58,6 +75,7 @@ fn to_rms(name: &str) -> (f64, &'static str, bool) {
     let is_from_zero = words.windows(2).any(|pair| pair[0] == "0" && pair[1] == "p");
     if words.iter().any(is_pp)
         || in_brackets.iter().any(|word| word.ends_with("pp"))
+        || words.iter().any(|word| ["uss", "vss"].contains(&word.as_str()))
         || ends(&["pkpk", "p2p", "ptp", "pk2pk", "pktopk", "peak2peak", "peaktopeak", "peakpeak", "峰峰值"])
         || are_two("pk")
         || are_two("p")
@@ -68,7 +86,9 @@ fn to_rms(name: &str) -> (f64, &'static str, bool) {
         (0.125_f64.sqrt(), "peak to peak", true)
     } else if is_peak
         || is_from_zero
-        || ends(&["peak", "pk", "0p", "amplitude", "amplitudes", "ampl", "spitze", "scheitel", "scheitelwert", "峰值"])
+        || name.contains(['û', 'Û', 'î', 'Î'])
+        || ends(&AMPLITUDES)
+        || words.first().is_some_and(|word| word.starts_with(['v', 'u'])) && words.iter().any(|word| word == "amp")
     {
         (0.5_f64.sqrt(), "amplitude", true)
     } else {
@@ -199,6 +219,11 @@ mod tests {
             ("U peak to peak [V]", eighth, true),
             ("Vpk", 2.0 * eighth, true),
             ("Scheitelwert U [V]", 2.0 * eighth, true),
+            ("V_LL amp", 2.0 * eighth, true),
+            ("Spitzenspannung LL", 2.0 * eighth, true),
+            ("Û_LL [V]", 2.0 * eighth, true),
+            ("Uss LL [V]", eighth, true),
+            ("I amp", 1.0, false),
             ("PA1_URMS_1 [V]", 1.0, true),
             ("current [A]", 1.0, false),
             ("U_ll [V p-p]", eighth, true),

@@ -105,7 +105,9 @@ fn unit_of(text: &str, header: &str) -> Option<StatedUnit> {
         return Some(of(Quantity::Speed, unit, header));
     }
     let base = base_of(text);
-    let is_unit = BASES.contains(&base.as_str());
+    // `V_LL amp` is the amplitude of a voltage.
+    let is_amplitude = base == "amp" && words(header).first().is_some_and(|word| word.starts_with(['v', 'u']));
+    let is_unit = BASES.contains(&base.as_str()) && !is_amplitude;
     [(Quantity::Voltage, Dimension::Voltage), (Quantity::Current, Dimension::Current)].into_iter().filter(|_| is_unit).find_map(
         |(quantity, dimension)| match unit_in_row(&base, "", dimension) {
             HeaderUnit::Known(unit) => Some(of(quantity, unit, header)),
@@ -114,8 +116,12 @@ fn unit_of(text: &str, header: &str) -> Option<StatedUnit> {
     )
 }
 
+/// Words of a frequency in Hz that is turns of the shaft in a second.
+const OF_SHAFT: [&str; 8] = ["shaft", "rotational", "revolutions", "drehzahl", "drehfrequenz", "drehgeschwindigkeit", "mech", "mechanical"];
+
 fn of(quantity: Quantity, unit: Unit, header: &str) -> StatedUnit {
-    let is_electrical = matches!(unit, Unit::RpmElectrical | Unit::KrpmElectrical | Unit::HertzElectrical)
+    let is_of_shaft = unit == Unit::HertzElectrical && words(header).iter().any(|word| OF_SHAFT.contains(&word.as_str()));
+    let is_electrical = matches!(unit, Unit::RpmElectrical | Unit::KrpmElectrical | Unit::HertzElectrical) && !is_of_shaft
         || matches!(unit, Unit::RadianPerSecond | Unit::DegreePerSecond) && states_electrical(header);
     StatedUnit::Of(quantity, unit.in_si(), is_electrical)
 }

@@ -504,6 +504,11 @@ mod tests {
         let read = of("f [Hz],U [V]\n50,10\n100,20\n").unwrap().unwrap();
         let Characteristic::OpenCircuit(table) = &read.table else { panic!() };
         assert!(read.has_electrical_speed && (table.rows[0].speed - 314.159_265).abs() < 1e-5);
+        // Turns of the shaft in a second; of a speed in Hz it is asked.
+        let read = of("Drehfrequenz [Hz],U [V]\n50,10\n100,20\n").unwrap().unwrap();
+        assert!(!read.has_electrical_speed);
+        let asked = of("Motor speed [Hz],U [V]\n50,10\n100,20\n").unwrap_err().to_string();
+        assert!(asked.contains("unit") && asked.contains("Motor speed [Hz]"), "{asked}");
         // A torque is that of the shaft.
         let of_torque = of("f [Hz],I [A],T [Nm]\n50,10,1\n100,20,2\n").unwrap_err().to_string();
         assert!(of_torque.contains("number of pole pairs"), "{of_torque}");

@@ -156,11 +156,11 @@ mod tests {
                 "omega_e: column 'speed_rpm' read as mechanical r/min with 1 pole pair"
             ]
         );
-        let options = LogOptions { pole_pairs: Some(3), ..map(&[("omega_e", "el_speed"), ("ud", "v")]) };
+        let options = LogOptions { pole_pairs: Some(3), ..map(&[("omega_e", "el_omega"), ("ud", "v")]) };
         assert_eq!(
-            notes("t,v,uq,id,iq,el_speed", &options),
+            notes("t,v,uq,id,iq,el_omega", &options),
             [
-                "no header states these units, so SI is assumed: ud ('v') in V and omega_e ('el_speed') in electrical rad/s",
+                "no header states these units, so SI is assumed: ud ('v') in V and omega_e ('el_omega') in electrical rad/s",
                 "the number of pole pairs, 3, is not needed to read this: the speed is electrical already",
             ]
         );

@@ -10,7 +10,7 @@ use super::{
     names::{automatic, mapped, only, positions},
     options::ResolvedOptions,
     power_meter,
-    proposal::{Proposed, propose, propose_needed, unit_of_speed, unit_of_tool},
+    proposal::{Proposed, current_unit_of_tool, is_angular, propose, propose_needed, unit_of_speed, unit_of_tool},
     resemblance::{fit, has_other_unit, is_reference},
 };
 use crate::{
@@ -529,6 +529,12 @@ impl Finder<'_> {
                 let usual = unit_of_tool(name, self.heads);
                 return Err(Problem::SpeedUnit { has_pole_pairs, of_shaft: states_mechanical(name), usual }.into());
             }
+            _ if dimension == Dimension::Speed && !is_canonical && stated.is_none() && is_electrical && !is_angular(name) => {
+                return Err(Problem::ElectricalSpeedUnit.into());
+            }
+            _ if let Some((tool, unit)) = current_unit_of_tool(channel, name, self.heads) => {
+                return Err(Problem::UnitOfTool { channel: canonical, tool, unit }.into());
+            }
             _ => {
                 unstated.push((channel, format!("{canonical} ('{}') in {}", shorten(name), si.prose())));
                 return Ok(si);
@@ -537,7 +543,7 @@ impl Finder<'_> {
         let is_alias = stated.is_none() && self.is_alias(channel, name);
         if is_open_speed && stated.is_none() && !unit.is_mechanical() {
             let has_pole_pairs = self.options.pole_pairs.is_some();
-            return Err(Problem::SpeedRotation { electrical: unit, mechanical: mechanical(unit), has_pole_pairs }.into());
+            return Err(Problem::SpeedRotation { electrical: unit, mechanical: unit.of_shaft(), has_pole_pairs }.into());
         }
         if unit.is_mechanical() && self.options.pole_pairs.is_none() {
             return Err(needs_pole_pairs(channel, unit).into());
@@ -547,7 +553,7 @@ impl Finder<'_> {
         let is_sure = stated.is_some() || is_canonical || of_layout.is_some() || is_electrical;
         if turning && !is_sure && !(is_alias && dimension == Dimension::Angle) {
             let sentence = format!("{column} read as {}; if it is mechanical, state its unit", unit.prose());
-            let advice = Advice::StateUnit { channel: canonical, unit: Some(mechanical(unit).name()) };
+            let advice = Advice::StateUnit { channel: canonical, unit: Some(unit.of_shaft().name()) };
             notes.push(Note::with_advice(sentence, advice));
         } else if unit != si {
             let pole_pairs = self.options.pole_pairs.filter(|_| unit.is_mechanical());
@@ -562,38 +568,12 @@ impl Finder<'_> {
 
 fn needs_pole_pairs(channel: Channel, unit: Unit) -> Problem {
     let what = if channel.dimension() == Dimension::Angle { "angle" } else { "speed" };
-    let electrical = electrical(unit);
+    let electrical = unit.electrical();
     Problem::PolePairs {
         what,
         channel: channel.name(),
         unit: unit.prose(),
         electrical: electrical.name(),
         electrical_unit: electrical.prose(),
-    }
-}
-
-/// The electrical unit that corresponds to a mechanical one.
-fn electrical(mechanical: Unit) -> Unit {
-    match mechanical {
-        Unit::RpmMechanical => Unit::RpmElectrical,
-        Unit::KrpmMechanical => Unit::KrpmElectrical,
-        Unit::HertzMechanical => Unit::HertzElectrical,
-        Unit::DegreePerSecondMechanical => Unit::DegreePerSecond,
-        Unit::RadianMechanical => Unit::Radian,
-        Unit::DegreeMechanical => Unit::Degree,
-        _ => Unit::RadianPerSecond,
-    }
-}
-
-/// The mechanical unit that corresponds to an electrical one.
-fn mechanical(electrical: Unit) -> Unit {
-    match electrical {
-        Unit::RpmElectrical => Unit::RpmMechanical,
-        Unit::KrpmElectrical => Unit::KrpmMechanical,
-        Unit::HertzElectrical => Unit::HertzMechanical,
-        Unit::DegreePerSecond => Unit::DegreePerSecondMechanical,
-        Unit::Radian => Unit::RadianMechanical,
-        Unit::Degree => Unit::DegreeMechanical,
-        _ => Unit::RadianPerSecondMechanical,
     }
 }

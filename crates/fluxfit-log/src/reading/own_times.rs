@@ -262,7 +262,7 @@ mod tests {
         // Temperatures, a clock that all channels share, and a number of the row.
         let warmer = |k: u32| format!("{:.3}", 25.0 + f64::from(k) * 1e-3);
         assert_eq!(
-            read("time,motor_ud,motor_uq,t_motor,motor_id,motor_iq,motor_el_speed", &[("omega_e", "motor_el_speed")], warmer),
+            read("time,motor_ud,motor_uq,t_motor,motor_id,motor_iq,motor_el_omega", &[("omega_e", "motor_el_omega")], warmer),
             Ok(40)
         );
         assert_eq!(read("t,ud,uq,T,id,iq,omega_e", &[("t", "t")], warmer), Ok(40));

@@ -118,11 +118,15 @@ pub(super) fn refuse_high_voltage(chosen: &[ChosenColumn], channels: &Channels) 
 }
 
 /// Voltage over current, ohm, of a log with more than [`LARGE_CURRENT`]; only a large traction motor at standstill is below. In mA, a motor
-/// of up to 10 ohm is.
-const LEAST_IMPEDANCE: f64 = 0.01;
+/// of up to 12 ohm is.
+const LEAST_IMPEDANCE: f64 = 0.012;
 
 /// Currents of fewer A are not doubted.
-const LARGE_CURRENT: f64 = 1000.0;
+const LARGE_CURRENT: f64 = 300.0;
+
+/// The same of a log with more than this, A: at 20 V a drive has no more.
+const LEAST_OF_LARGEST: f64 = 0.02;
+const LARGEST_CURRENT: f64 = 1000.0;
 
 /// No drive of a PMSM has more, A: 690 V and 10 MW.
 const MOST_CURRENT: f64 = 12e3;
@@ -161,7 +165,8 @@ pub(super) fn refuse_thousandths(chosen: &[ChosenColumn], channels: &Channels) -
         let of_pair = |column: &&ChosenColumn| pair.contains(&column.channel);
         chosen.iter().filter(of_pair).filter(|column| !column.is_unit_written && !column.is_share).count() == pair.len()
     };
-    let milliamperes = amperes > MOST_CURRENT || amperes > LARGE_CURRENT && volts < LEAST_IMPEDANCE * amperes;
+    let least = if amperes > LARGEST_CURRENT { LEAST_OF_LARGEST } else { LEAST_IMPEDANCE };
+    let milliamperes = amperes > MOST_CURRENT || amperes > LARGE_CURRENT && volts < least * amperes;
     if milliamperes && volts > 0.0 && is_unwritten([Channel::Id, Channel::Iq]) {
         return Err(Problem::Thousandths { channels: ["id", "iq"], amperes, volts, unit: "A" }.into());
     }
@@ -315,6 +320,7 @@ mod tests {
             sentence.unwrap_or_default()
         };
         assert!(refused(100.0, 12e3).contains("id and iq were in mA"));
+        assert!(refused(5.4, 496.0).contains("id and iq were in mA"));
         assert!(refused(1e5, 12.0).contains("ud and uq were in mV"));
         assert!(refused(1e4, 3e3).contains("as if they were in mA and mV"));
         assert!(refused(12e3, 800.0).contains("as if they were in mA and mV"));

@@ -173,6 +173,21 @@ pub(super) fn unit_of_tool(name: &str, heads: &[ColumnHead]) -> Option<(&'static
     }
 }
 
+/// The same of currents.
+pub(super) fn current_unit_of_tool(channel: Channel, name: &str, heads: &[ColumnHead]) -> Option<(&'static str, Unit)> {
+    let has = |wanted: &str| heads.iter().any(|head| head.name.trim() == wanted);
+    let is_current = channel.dimension() == Dimension::Current && ["current_d", "current_q"].contains(&name.trim());
+    // Its monitor prints 1000 times the current (SimpleFOC, FOCMotor::monitor).
+    (is_current && ["voltage_d", "voltage_q", "velocity"].into_iter().all(has)).then_some(("SimpleFOC", Unit::Milliampere))
+}
+
+/// Whether an electrical speed without a unit is called by its symbol, which is in rad/s: `omega_e`, `w_el`.
+pub(super) fn is_angular(name: &str) -> bool {
+    words(name)
+        .iter()
+        .any(|word| word.starts_with("omega") || word.starts_with('ω') || ["w", "we", "wel", "welec"].contains(&word.as_str()))
+}
+
 /// The best one; of equal ones the first: a second motor or sensor comes later.
 fn best<'a>(candidates: impl Iterator<Item = &'a Candidate>) -> Option<&'a Candidate> {
     candidates.reduce(|best, next| if next.fit.score > best.fit.score { next } else { best })
@@ -327,5 +342,10 @@ mod tests {
         assert_eq!(of("odrv0.axis1.encoder.vel_estimate"), Some(("ODrive", "Hz-mech")));
         assert_eq!(of("velocity;voltage_q;voltage_d;current_q;current_d"), Some(("SimpleFOC", "rad/s-mech")));
         assert_eq!([of("velocity;vd;vq"), of("vel"), of("axis0.speed")], [None; 3]);
+        let heads = ["velocity", "voltage_q", "voltage_d", "current_q", "current_d"];
+        let heads = heads.map(|name| ColumnHead { name: name.to_owned(), ..ColumnHead::default() });
+        let of_current =
+            |heads: &[ColumnHead]| current_unit_of_tool(Channel::Iq, "current_q", heads).map(|(tool, unit)| (tool, unit.name()));
+        assert_eq!((of_current(&heads), of_current(&heads[1..])), (Some(("SimpleFOC", "mA")), None));
     }
 }

@@ -46,8 +46,8 @@ fn every_dialect_gives_the_same_log() {
     // Columns of a matrix, as they are called of a MAT file.
     let matrix = LOG.replacen("ud,uq,id,iq", "\"out.vdq(:,1)\",\"out.vdq(:,2)\",\"idq(1,:)\",\"idq(2,:)\"", 1);
     assert_eq!(log_of(matrix.as_bytes(), &LogOptions::default()), expected);
-    let renamed = LOG.replace("ud", "V d").replace("omega_e", "el speed");
-    assert_eq!(log_of(renamed.as_bytes(), &map(&["ud=V d", "omega=El Speed"])), expected);
+    let renamed = LOG.replace("ud", "V d").replace("omega_e", "omega el");
+    assert_eq!(log_of(renamed.as_bytes(), &map(&["ud=V d", "omega=Omega El"])), expected);
 }
 
 #[test]

@@ -4,7 +4,6 @@
 
 use super::{
     array::{Array, Contents, is_column},
-    modelica,
     numbers::Place,
 };
 use crate::{
@@ -95,7 +94,8 @@ fn is_identifier(letters: &[u8]) -> bool {
     letters.first().is_some_and(u8::is_ascii_alphabetic) && letters.iter().all(|letter| letter.is_ascii_alphanumeric() || *letter == b'_')
 }
 
-pub(super) fn open(source: &RandomAccess) -> Result<Contents<Place>, FileError> {
+/// The variables of a file.
+pub(super) fn open(source: &RandomAccess) -> Result<Vec<Variable>, FileError> {
     let mut variables = Vec::new();
     let mut at = 0;
     while at < source.length() {
@@ -115,9 +115,11 @@ pub(super) fn open(source: &RandomAccess) -> Result<Contents<Place>, FileError> 
         }
         at = to;
     }
-    if let Some(contents) = modelica::contents(source, &variables)? {
-        return Ok(contents);
-    }
+    Ok(variables)
+}
+
+/// The arrays of numbers among variables.
+pub(super) fn contents(variables: Vec<Variable>) -> Contents<Place> {
     let mut contents = Contents::default();
     for Variable { name, number, is_matrix, rows, columns, from, to } in variables {
         if !is_matrix {
@@ -127,5 +129,5 @@ pub(super) fn open(source: &RandomAccess) -> Result<Contents<Place>, FileError> 
             contents.arrays.push(Array { path: name, unit: None, rows, columns, place });
         }
     }
-    Ok(contents)
+    contents
 }
