@@ -15,7 +15,8 @@ pub fn parse_map(text: &str) -> Result<(String, String), FileError> {
     Ok((name.to_owned(), header.to_owned()))
 }
 
-/// Several of them, separated by commas; a comma in brackets or quotes belongs to a name, as in `t=data(:,1)`.
+/// Several of them, separated by commas; a comma in brackets or quotes belongs to a name, as in `t=data(:,1)`, and so does one behind
+/// which no `=` stands before the next comma: `iq=P-0-0043, current,id=..`.
 ///
 /// # Errors
 /// As [`parse_map`].
@@ -32,7 +33,14 @@ pub fn parse_maps(text: &str) -> Result<Vec<(String, String)>, FileError> {
         }
         c == ',' && depth <= 0 && !quoted
     };
-    text.split(is_separator).map(parse_map).collect()
+    let mut pairs: Vec<String> = Vec::new();
+    for part in text.split(is_separator) {
+        match pairs.last_mut() {
+            Some(pair) if !part.trim().is_empty() && !part.contains('=') => *pair += &format!(",{part}"),
+            _ => pairs.push(part.to_owned()),
+        }
+    }
+    pairs.iter().map(|pair| parse_map(pair)).collect()
 }
 
 /// `omega=rpm-mech`: the canonical name of a channel, and its unit. A name that columns of one channel alone have, such as `speed`, is
@@ -91,6 +99,8 @@ mod tests {
         assert_eq!(pairs("id=i [A, peak],iq=q)"), ["i [A, peak]", "q)"]);
         // As a message cuts it.
         assert_eq!(pairs("id=i of the stator [A…,iq=q"), ["i of the stator [A…", "q"]);
+        assert_eq!(pairs("iq=P-0-0043, Strom, Ist,id=P-0-0044, Strom"), ["P-0-0043, Strom, Ist", "P-0-0044, Strom"]);
+        assert!(parse_maps("t=a,x=2,ud=b").is_err());
         assert!(parse_maps("t=a,,ud=b").is_err() && parse_maps("").is_err());
     }
 

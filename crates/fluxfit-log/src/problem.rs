@@ -430,9 +430,8 @@ impl Problem {
                 let first = Advice::Together(std::iter::once(first).chain(pole_pairs).collect());
                 std::iter::once(first).chain(Some(electrical).filter(|_| !of_shaft)).collect()
             }
-            Self::ElectricalSpeedUnit => [Unit::RadianPerSecond, Unit::RpmElectrical, Unit::HertzElectrical]
-                .map(|unit| Advice::StateUnit { channel: "omega_e", unit: Some(unit.name()) })
-                .to_vec(),
+            // Which is right is not known.
+            Self::ElectricalSpeedUnit => vec![Advice::StateUnit { channel: "omega_e", unit: Some("UNIT") }],
             Self::UnitOfTool { unit, .. } => ["id", "iq"].map(|channel| Advice::StateUnit { channel, unit: Some(unit.name()) }).to_vec(),
             Self::SpeedUnit { has_pole_pairs, .. } => vec![Advice::StateRotation {
                 channel: "omega_e",

@@ -279,10 +279,12 @@ fn are_remarks(line: &Header, text: &str) -> bool {
     let are_texts = |cells: &[String]| cells.iter().all(|cell| !cell.is_empty() && !is_number(cell));
     let longest = |cells: &[String]| cells.iter().map(|cell| cell.chars().count()).max().unwrap_or_default();
     let are_units = longest(&names) <= LONGEST_UNIT;
+    // Names with their units, `Strom [A]`, are no units of what stands above.
+    let states_unit = |cell: &String| cell.ends_with([']', ')']) && !cell.starts_with(['[', '(']);
+    let are_named = names.iter().all(states_unit) && !line.names.iter().any(states_unit);
     are_texts(&line.names)
         && are_texts(&names)
-        && !are_units
-        && longest(&line.names) > longest(&names)
+        && (are_named || !are_units && longest(&line.names) > longest(&names))
         && row.iter().all(|cell| is_number(cell))
 }
 
@@ -516,6 +518,9 @@ mod tests {
                 assert_eq!((found.0, char::from(found.2)), (names(), separator), "{text}");
             }
         }
+        // A title of as many cells as the table.
+        assert_eq!(found("Motor;A 12\nStrom [A];Drehmoment [Nm]\n1,00;155,0\n2,00;310,1\n").1, 2);
+        assert_eq!(found("Strom;Drehmoment\n[A];[Nm]\n1,00;155,0\n2,00;310,1\n").1, 1);
         // A mark at the end of a row separates nothing.
         assert_eq!(found("a,b\n1,2;\n3,4;\n5,6;\n").2, b',');
     }

@@ -253,11 +253,12 @@ fn of_german(channel: Channel, words: &[String]) -> Option<Fit> {
 /// Whether a word is the number of a converter's parameter, as before a name in Siemens' tools: `r0076 Stromistwert feldbildend`.
 pub(super) fn is_parameter(word: &str) -> bool {
     let digits = word.strip_prefix(['r', 'p']).unwrap_or_default();
-    digits.len() == DIGITS && digits.bytes().all(|byte| byte.is_ascii_digit())
+    (DIGITS..=MOST_DIGITS).contains(&digits.len()) && digits.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Digits of such a number.
-const DIGITS: usize = 4;
+/// Digits of such a number: `r78` in traces of STARTER.
+const DIGITS: usize = 2;
+const MOST_DIGITS: usize = 5;
 
 /// Whether a name ends in the unit of a flux density, `Bmax_T`: that letter is no time.
 fn is_in_tesla(name: &str) -> bool {
