@@ -60,6 +60,21 @@ pub(super) fn is_to_star(name: &str) -> bool {
     has_points(name, |points| points.strip_suffix('n').is_some_and(|phase| PHASES.contains(&phase)))
 }
 
+/// Whether some words of a name are a voltage between a terminal and the two others: `U U-VW`, `V A-BC`.
+pub(super) fn is_to_both(name: &str) -> bool {
+    let words = words(name.split(['[', '(']).next().unwrap_or(name));
+    let is = |run: &[String]| {
+        let is_of = |phases: &[&str]| {
+            phases.contains(&run[1].as_str()) && {
+                let others: Vec<&str> = phases.iter().copied().filter(|phase| *phase != run[1]).collect();
+                run[2] == others.concat() || run[2] == others.iter().rev().copied().collect::<String>()
+            }
+        };
+        BEFORE.contains(&run[0].as_str()) && PHASES.chunks(3).any(is_of)
+    };
+    words.windows(3).any(is)
+}
+
 /// The three phases, by each of their names.
 const PHASES: [&str; 12] = ["a", "b", "c", "u", "v", "w", "1", "2", "3", "l1", "l2", "l3"];
 
@@ -86,5 +101,19 @@ mod tests {
             assert_eq!(of(&names).pairs, [1, 2, 3], "{names:?}");
         }
         assert_eq!(of(&["t", "ua", "ub", "v12", "v5", "uvw", "uv", "all_d", "ud"]), LineToLine::default());
+    }
+
+    #[test]
+    fn a_terminal_against_the_others_is_no_pair() {
+        for (name, expected) in [
+            ("U U-VW [V]", true),
+            ("V A-CB", true),
+            ("Spannung 1-23 [V]", true),
+            ("U_12", false),
+            ("V_uw [V]", false),
+            ("U U-V [V]", false),
+        ] {
+            assert_eq!(is_to_both(name), expected, "{name}");
+        }
     }
 }

@@ -104,8 +104,9 @@ fn entry(channel: Channel, column: &InspectedColumn, options: &LogOptions) -> St
     let is_taken = column.channel.is_some();
     let is_instant = channel == Channel::T && column.is_instant;
     let is_speed = channel == Channel::OmegaE;
-    // What only the channel's name means would count as stated here, and digits or mV pass for V.
-    let read_as = column.read_as.filter(|_| column.is_unit_written || !is_electrical(channel));
+    // What only the channel's name means would count as stated here, digits or mV pass for V, and counts of an encoder for rad.
+    let may_be_other = is_electrical(channel) || channel == Channel::ThetaE;
+    let read_as = column.read_as.filter(|_| column.is_unit_written || !may_be_other);
     let unit = match read_as {
         _ if is_instant || column.share.is_some() => None,
         Some((unit, _)) => Some(unit).filter(|unit| *unit != "1"),

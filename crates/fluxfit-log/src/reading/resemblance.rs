@@ -159,6 +159,10 @@ pub(super) fn fit(channel: Channel, name: &str) -> Option<Fit> {
     if channel == Channel::OmegaE && words.iter().any(is_other) {
         return None;
     }
+    let has_any = |some: &[&str]| words.iter().any(|word| some.contains(&word.as_str()));
+    if channel == Channel::OmegaE && has_any(&["angle", "winkel", "position"]) && !has_any(&["speed", "velocity"]) {
+        return None;
+    }
     let letters: usize = words.iter().map(|word| word.chars().count()).sum();
     let runs = (0..words.len()).flat_map(|start| (start + 1..=(start + WORDS).min(words.len())).map(move |end| start..end));
     let fits = runs.filter_map(|run| {
@@ -315,6 +319,14 @@ pub(super) fn words(name: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_angle_and_the_speed_of_a_vehicle_are_no_speed_of_the_motor() {
+        for name in ["Angle (deg mech)", "Winkel n", "vehicle_speed_kmh", "car speed"] {
+            assert!(fit(Channel::OmegaE, name).is_none(), "{name}");
+        }
+        assert!(fit(Channel::OmegaE, "motor speed").is_some() && fit(Channel::OmegaE, "angle velocity").is_some());
+    }
 
     /// As a trace of Siemens' STARTER names them.
     #[test]

@@ -9,6 +9,7 @@ use super::{
     bench_units::{StatedUnit, stated_unit},
     duty,
     layout::NotALog,
+    line_to_line,
     resemblance::{is_reference, words},
     rms,
     table::Table,
@@ -22,7 +23,9 @@ use crate::{
     unclear_table::UnclearTable,
 };
 use fluxfit::{
-    characteristics::{Characteristic, DirectCurrent, DirectCurrentRow, DutyCycle, DutyCycleRow, TorqueOfCurrent, TorqueOfCurrentRow},
+    characteristics::{
+        Across, Characteristic, DirectCurrent, DirectCurrentRow, DutyCycle, DutyCycleRow, TorqueOfCurrent, TorqueOfCurrentRow,
+    },
     frames::Dq,
 };
 use fluxfit_files::FileError;
@@ -200,14 +203,24 @@ fn torque_of_current(table: &mut Table, d: &OfD, q: Axis, columns: &[Found], tor
 }
 
 fn direct_current(table: &mut Table, voltage: &Found, current: &Found) -> Result<Option<ReadCharacteristic>, FileError> {
-    let Some(across) = points(&[voltage]) else { return Ok(None) };
-    let rows: Vec<DirectCurrentRow> = rows(table, [(voltage.index, voltage.in_si), (current.index, current.in_si)])?
+    /// Ohms of one winding and the two others side by side, over those of one.
+    const TO_BOTH: f64 = 1.5;
+    let to_both = voltage.mapped.is_none() && line_to_line::is_to_both(&voltage.header);
+    let of_points = if to_both { Some(Across::Phase) } else { points(&[voltage]) };
+    let Some(across) = of_points else { return Ok(None) };
+    let in_si = if to_both { voltage.in_si / TO_BOTH } else { voltage.in_si };
+    let rows: Vec<DirectCurrentRow> = rows(table, [(voltage.index, in_si), (current.index, current.in_si)])?
         .into_iter()
         .filter(|[_, current]| *current != 0.0)
         .map(|[voltage, current]| DirectCurrentRow { current, voltage })
         .collect();
     let used = vec![("voltage", voltage.header.clone()), ("current", current.header.clone())];
-    let note = "voltage and current are read as those of a direct current, the rotor at rest".to_owned();
+    let between = match across {
+        _ if to_both => "one terminal and the two others, so that R_s is two thirds of their ratio",
+        Across::Lines => "two terminals, so that R_s is half of their ratio",
+        Across::Phase => "a terminal and the star point, so that R_s is their ratio",
+    };
+    let note = format!("voltage and current are read as those of a direct current, the rotor at rest, between {between}");
     let table = Characteristic::DirectCurrent(DirectCurrent { rows, across });
     Ok(Some(ReadCharacteristic { table, columns: used, notes: vec![note.into()], has_electrical_speed: false }))
 }
@@ -273,7 +286,6 @@ fn duty_cycle(
 mod tests {
     use super::super::characteristic::parse_characteristic as of;
     use super::*;
-    use fluxfit::characteristics::Across;
 
     fn table(text: &'static str) -> Characteristic {
         of(text, Some(2)).unwrap().unwrap().table
@@ -310,6 +322,8 @@ mod tests {
             let Characteristic::DirectCurrent(read) = table(text.leak()) else { panic!("{names}") };
             assert_eq!((read.rows[2], read.across), (DirectCurrentRow { current: 40.0, voltage: 0.96 }, across), "{names}");
         }
+        let Characteristic::DirectCurrent(read) = table("U U-VW [V],I [A]\n0.24,10\n0.48,20\n0.96,40\n") else { panic!() };
+        assert!((read.rows[2].voltage - 0.64).abs() < 1e-12 && read.across == Across::Phase);
         for names in ["U_DC [V],I_DC [A]", "Vdc (V),Idc (A)", "voltage,current"] {
             let refusal = of(format!("{names}\n0.24,10\n0.48,20\n").leak(), None).unwrap_err().to_string();
             assert!(refusal.contains("put 'll'"), "{names}: {refusal}");
