@@ -124,10 +124,12 @@ def test_the_page_is_that_of_the_command(table: Any, file: Path, tmp_path: Path)
 def test_what_fails_is_a_row(table: Any) -> None:
     apart = pd.concat([table, table[:300]])
     apart.loc[apart["motor_id"] == "m004", "motor_id"] = None
-    apart.loc[apart["motor_id"] == "m005", "uq"] = np.nan
+    apart.loc[(apart["motor_id"] == "m005") & (apart["t"] == 0.0), "uq"] = np.nan
+    apart.loc[apart["motor_id"] == "m006", "uq"] = np.nan
     found = fluxfit.fleet(apart, "motor_id").to_pandas().set_index("motor")["error"]
     assert "stand in several places" in found["m000"] and "rows of table have no motor_id" in found[""]
     assert "motor m005 of table, row 1, column 'uq'" in found["m005"]
+    assert "motor m006 of table, column 'uq': the column has no number" in found["m006"]
     assert found.notna().sum() == 4 and len(found) == 12
 
 
