@@ -130,7 +130,7 @@ def test_what_fails_is_a_row(table: Any) -> None:
     assert "stand in several places" in found["m000"] and "rows of table have no motor_id" in found[""]
     assert "motor m005 of table, row 1, column 'uq'" in found["m005"]
     assert "motor m006 of table, column 'uq': the column has no number" in found["m006"]
-    assert found.notna().sum() == 4 and len(found) == 12
+    assert found.notna().sum() == 5 and len(found) == 12
 
 
 def test_refusals(table: Any, file: Path, tmp_path: Path) -> None:
