@@ -133,7 +133,7 @@ pub(crate) enum Problem {
     #[error("nothing states the unit of this electrical speed; state it: rad/s, rpm-elec or Hz-elec")]
     ElectricalSpeedUnit,
     #[error("{tool} writes this current in {}; state the unit, also if it is A", .unit.prose())]
-    UnitOfTool { channel: &'static str, tool: &'static str, unit: Unit },
+    UnitOfTool { tool: &'static str, unit: Unit },
     #[error("this speed is in {}, and nothing states whether it is electrical or that of the shaft; state which", .electrical.prose().trim_start_matches("electrical "))]
     SpeedRotation { electrical: Unit, mechanical: Unit, has_pole_pairs: bool },
     #[error(

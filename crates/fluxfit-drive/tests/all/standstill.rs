@@ -13,6 +13,7 @@ use fluxfit_drive::{
     schedule::{Profile, Ramp},
     simulate,
 };
+use std::f64::consts::TAU;
 
 const RS: f64 = 0.1;
 const LD: f64 = 150e-6;
@@ -81,6 +82,35 @@ fn one_step_does_not_tell_resistance_from_dead_time() {
             assert!(is_held, "{parameter:?}: {} ± {}", one.raw, one.uncertainty.half_width);
         }
         assert_ne!(found.parameter(Parameter::Rs).verdict, Verdict::Identified);
+    }
+}
+
+/// A sine along the d axis, by the exact step of R and L, and noise alone along the other, which has no voltage: whatever its noise, L_q is
+/// not told, and R_s and L_d are.
+#[test]
+fn an_axis_of_noise_alone_leaves_the_other() {
+    const PERIOD: f64 = 1e-4;
+    for (noise, seed) in (0..6).map(|seed| (if seed < 3 { 0.05 } else { 0.15 }, seed)) {
+        let (decay, mut draws, mut id) = ((-0.9 / 1.1e-3 * PERIOD).exp(), Draws::seeded(seed, 0), 0.0);
+        let mut columns = Columns::default();
+        for row in 0..10_000 {
+            let t = f64::from(row) * PERIOD;
+            let ud = 3.0 * (TAU * 50.0 * t).sin();
+            for (column, value) in [(&mut columns.t, t), (&mut columns.ud, ud), (&mut columns.uq, 0.0), (&mut columns.omega_e, 0.0)] {
+                column.push(value);
+            }
+            columns.id.push(id + noise * draws.normal());
+            columns.iq.push(noise * draws.normal());
+            id = decay * id + (1.0 - decay) * ud / 0.9;
+        }
+        let found = identify(&Log::new(columns).unwrap(), &Request::default()).unwrap().identification;
+        for (parameter, truth) in [(Parameter::Rs, 0.9), (Parameter::Ld, 1.1e-3)] {
+            let one = found.parameter(parameter);
+            let value = one.value().unwrap_or_else(|| panic!("{noise} A, {seed}: {parameter:?} has no value"));
+            assert!((value - truth).abs() < 1.5 * one.uncertainty.half_width, "{noise} A, {seed}, {parameter:?}: {value}");
+        }
+        let lq = found.parameter(Parameter::Lq);
+        assert_eq!((lq.value(), &lq.remedy), (None, &Some(Remedy::StepCurrent { parameter: Parameter::Lq })), "{noise} A, {seed}");
     }
 }
 

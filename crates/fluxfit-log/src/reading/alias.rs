@@ -98,8 +98,8 @@ fn vector(name: &str, heads: &[ColumnHead], quantities: &[&str], references: boo
     let [_, second] = *ELEMENTS.iter().find(|[first, _]| last == first)?;
     let is_second =
         |head: &ColumnHead| words(without_unit(&head.name)).split_last().is_some_and(|(end, other)| end == second && other == stem);
-    let is_measured = is_named && is_plain && (references || !name.contains('*') && !says_reference(&parts));
-    is_measured.then(|| heads.iter().position(is_second)).flatten()
+    let is_possible = is_named && is_plain && (references || !name.contains('*') && !says_reference(&parts));
+    is_possible.then(|| heads.iter().position(is_second)).flatten()
 }
 
 /// The name of an element without the unit in brackets behind it: `Vdq(1) [V]`.

@@ -533,7 +533,7 @@ impl Finder<'_> {
                 return Err(Problem::ElectricalSpeedUnit.into());
             }
             _ if let Some((tool, unit)) = current_unit_of_tool(channel, name, self.heads) => {
-                return Err(Problem::UnitOfTool { channel: canonical, tool, unit }.into());
+                return Err(Problem::UnitOfTool { tool, unit }.into());
             }
             _ => {
                 unstated.push((channel, format!("{canonical} ('{}') in {}", shorten(name), si.prose())));

@@ -306,8 +306,8 @@ mod tests {
         assert_eq!(refuse_high_voltage(&chosen, &spike), Ok(()));
     }
 
-    /// The paper's motor at 12 A and 100 V, in mA, in mV and in both; an electric kart's 1100 A at 25 V. A wind turbine's 1400 A at
-    /// 2700 V state their units.
+    /// The paper's motor at 12 A and 100 V, in mA, in mV and in both, and a gimbal's at 0.5 A and 5.4 V in mA; an electric kart's 1100 A at
+    /// 25 V. A wind turbine's 1400 A at 2700 V state their units.
     #[test]
     fn thousandths_are_told_by_both_sizes() {
         let refused = |volts: f64, amperes: f64| {

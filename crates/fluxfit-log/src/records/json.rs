@@ -219,7 +219,9 @@ fn of_columns(mut records: Splitter) -> Result<Opened, FileError> {
     let (_, bytes) = records.next()?.ok_or_else(|| none(nothing()))?;
     let mut held = Held::default();
     held.gather(parse(&bytes)?, &mut Vec::new());
-    if let Some(records) = held.records.into_iter().max_by_key(Vec::len) {
+    let longest = held.columns.iter().map(|(_, values)| values.len()).max().unwrap_or_default();
+    // A few records beside longer columns are events.
+    if let Some(records) = held.records.into_iter().max_by_key(Vec::len).filter(|records| records.len() >= longest) {
         let bytes = Value::Array(records).to_string().into_bytes();
         return open(Text::of(String::from_utf8_lossy(&bytes).into_owned()));
     }

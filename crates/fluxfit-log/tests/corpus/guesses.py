@@ -140,7 +140,8 @@ def lists(make):
 def nested(make):
     """Lists of columns, objects deep."""
     lists = {name: [float(value) for value in values] for name, values in make.part(make.FAST).items()}
-    one = {"motor": {"name": "a", "pole_pairs": 4}, "runs": {"first": {"signals": lists}}}
+    events = [{"t": 0.0, "what": "start"}, {"t": 1.0, "what": "stop"}]
+    one = {"motor": {"name": "a", "pole_pairs": 4}, "events": events, "runs": {"first": {"signals": lists}}}
     make.read(make.put("nested_lists.json", json.dumps(one)), "lists of columns within objects", make.part(make.FAST))
     axes = {"t": lists["t"], "measured": {name: lists[name] for name in ("ud", "uq", "id", "iq")}, "omega_e": lists["omega_e"],
             "reference": {"id": lists["iq"], "iq": lists["id"]}}

@@ -22,6 +22,9 @@ const LONGEST: u64 = 1 << 24;
 /// Most variables of a model.
 const MOST_VARIABLES: u64 = 1 << 18;
 
+/// Most texts of `Aclass`, which has four.
+const LONGEST_CLASS: u64 = 8;
+
 /// The matrix of what changes.
 const CHANGING: f64 = 2.0;
 
@@ -31,6 +34,9 @@ pub(super) fn contents(source: &RandomAccess, variables: &[Variable]) -> Result<
     let (Some(class), Some(names), Some(infos), Some(data)) = (find("Aclass"), find("name"), find("dataInfo"), find("data_2")) else {
         return Ok(None);
     };
+    if class.rows > LONGEST_CLASS {
+        return Ok(None);
+    }
     let class = Texts::read(source, class)?.lines(false);
     if class.first().is_none_or(|first| first != "Atrajectory") {
         return Ok(None);

@@ -26,10 +26,12 @@ const NO_VOLTAGE: f64 = 1e-9;
 /// A current without voltage is noise, and none that dies out, if it is below this part of the other axis'.
 const NO_CURRENT: f64 = 0.01;
 
-/// The same of a current whose first tenth has at most twice its share of the squares: what dies out within the log has more.
+/// The same of a current that does not die out: a larger one is that of a voltage that was not logged.
 const NOISY_CURRENT: f64 = 0.3;
-const FIRST: usize = 10;
-const SHARE: f64 = 2.0;
+
+/// What dies out within the log has, in the first of so many parts of it, more than so many times that part's share of the squares.
+const PARTS: usize = 10;
+const MOST_IN_FIRST: f64 = 2.0;
 
 /// Whether no row of the log depends on a parameter: at rest on the flux, nor on the inductance of an axis without voltage and current.
 pub(super) fn is_absent(log: &Log, parameter: Parameter) -> bool {
@@ -37,8 +39,8 @@ pub(super) fn is_absent(log: &Log, parameter: Parameter) -> bool {
     // Largest values would be those of the noise.
     let is_below = |part: f64, own: &[f64], other: &[f64]| dot(own, own) <= part.powi(2) * dot(other, other);
     let dies_out = |own: &[f64]| {
-        let first = &own[..own.len() / FIRST];
-        FIRST as f64 * dot(first, first) > SHARE * dot(own, own)
+        let first = &own[..own.len() / PARTS];
+        PARTS as f64 * dot(first, first) > MOST_IN_FIRST * dot(own, own)
     };
     let is_idle = |u: [&[f64]; 2], [own, other]: [&[f64]; 2]| {
         is_below(NO_VOLTAGE, u[0], u[1]) && (is_below(NO_CURRENT, own, other) || is_below(NOISY_CURRENT, own, other) && !dies_out(own))
