@@ -114,7 +114,13 @@ fn gain_of_same_flux(log: &Log, loaded: &[OperatingPoint], coasting: &[Operating
     of_frames[FrameLag::OTHER].standard_error = ANY_LAG;
     let gain = gain_unknown(&points, |w| w >= loaded.len(), 1.0);
     let unknowns: Vec<Loss> = [gain].into_iter().chain(of_frames).chain(losses).collect();
-    let estimate = Estimate::solve_with(&points, &excitation, request, &unknowns, VoltageAccuracy { fraction: ACCURACY, volts: 0.0 });
+    let estimate = Estimate::solve_with(
+        &points,
+        &excitation,
+        request,
+        &unknowns,
+        VoltageAccuracy { fraction: ACCURACY, ..VoltageAccuracy::default() },
+    );
     let (gain, error) = *estimate.found.first()?;
     let (other, of_other) = *estimate.found.get(1 + FrameLag::OTHER)?;
     if other.abs() > SAME_LAG + LAG_FOUND * of_other {

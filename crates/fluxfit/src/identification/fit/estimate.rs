@@ -72,7 +72,13 @@ pub struct Estimate {
 impl Estimate {
     /// Solves the points.
     pub(crate) fn solve(points: &[OperatingPoint], excitation: &Excitation, request: &Request, losses: &[Loss]) -> Self {
-        Self::solve_with(points, excitation, request, losses, VoltageAccuracy { fraction: request.voltage_accuracy, volts: 0.0 })
+        Self::solve_with(
+            points,
+            excitation,
+            request,
+            losses,
+            VoltageAccuracy { fraction: request.voltage_accuracy, ..VoltageAccuracy::default() },
+        )
     }
 
     /// Solves the points with voltages trusted otherwise than the request has it.

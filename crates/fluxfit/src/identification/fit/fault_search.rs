@@ -446,7 +446,7 @@ impl ScoreTest {
         residuals.extend(priors.iter().map(|belief| belief.weight * (belief.value - drive.get(belief.unknown))));
         let normal = NormalMatrix::of(&jacobian);
         let inverse = normal.inverse();
-        let accuracy = VoltageAccuracy { fraction: search.voltage_accuracy, volts: 0.0 };
+        let accuracy = VoltageAccuracy { fraction: search.voltage_accuracy, ..VoltageAccuracy::default() };
         let [accuracy] = voltage_accuracy::covariances(objective, drive, &inverse, &jacobian, [accuracy]);
         let noise = inverse.diagonal() * (cost / independent);
         let standard_errors = (noise + accuracy.diagonal()).iter().map(|variance| variance.max(0.0).sqrt()).collect();

@@ -45,8 +45,9 @@ pub(crate) fn admit(
     let without = |known| if matches!(known, Known::Prior { .. }) { Known::Nothing } else { known };
     let alone = Request { known: request.known.map(without), ..request.clone() };
     let of_points = Excitation::of(points, &alone.known);
-    let solve = |fraction: f64| Estimate::solve_with(points, &of_points, &alone, losses, VoltageAccuracy { fraction, volts });
-    let with_priors = |fraction: f64| Estimate::solve_with(points, excitation, request, losses, VoltageAccuracy { fraction, volts });
+    let solve = |fraction: f64| Estimate::solve_with(points, &of_points, &alone, losses, VoltageAccuracy { fraction, volts, across: 0.0 });
+    let with_priors =
+        |fraction: f64| Estimate::solve_with(points, excitation, request, losses, VoltageAccuracy { fraction, volts, across: 0.0 });
     let Some(ratio) = significant_ratio(points, &solve(request.voltage_accuracy)) else {
         return (with_priors(request.voltage_accuracy), None);
     };

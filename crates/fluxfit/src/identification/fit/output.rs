@@ -124,10 +124,10 @@ impl OutputFit {
             sensors: sensors(&drive),
             dead_time: undetected_loss::doubt(log, objective, &drive, &unknowns, &residuals, steady, request),
         };
-        let misshapen = voltage_loss::misshapen_in_rows(log, reading, drive.faults.dead_time.voltage);
+        let misshapen = voltage_loss::misshapen_in_rows(log, reading, &drive.faults.dead_time);
         let corrected_beside_loss = voltage_loss::corrected_by_observer(log, &drive, rms_by_axis(&residuals));
-        let accuracies = [(request.voltage_accuracy, misshapen), (0.0, corrected_beside_loss)];
-        let accuracies = accuracies.map(|(fraction, volts)| VoltageAccuracy { fraction, volts });
+        let corrected = VoltageAccuracy { volts: corrected_beside_loss, ..VoltageAccuracy::default() };
+        let accuracies = [VoltageAccuracy { fraction: request.voltage_accuracy, ..misshapen }, corrected];
         let errors = Errors::of(objective, &drive, &unknowns, &priors, &residuals, accuracies, &scale);
         let shifts = OutputShifts { process_noise: errors.by_contradiction(&unknowns, &shifts.process_noise), ..shifts };
         let uncertainty = errors.uncertainty(&unknowns, &shifts);

@@ -22,12 +22,20 @@ const CELL: f64 = 0.04;
 const FARTHEST: i32 = 20;
 
 /// How far the voltages are trusted.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct VoltageAccuracy {
     /// Standard uncertainty as a fraction of the voltage.
     pub(crate) fraction: f64,
     /// The same at any voltage, V.
     pub(crate) volts: f64,
+    /// The same across the current alone, V: of a voltage along it that comes early or late.
+    pub(crate) across: f64,
+}
+
+impl VoltageAccuracy {
+    fn is_exact(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// Covariances of the unknowns from the voltages' accuracy, one for each that is given. `slopes` are the derivatives of the residuals by
@@ -40,8 +48,7 @@ pub(crate) fn covariances<const COUNT: usize>(
     accuracies: [VoltageAccuracy; COUNT],
 ) -> [DMatrix<f64>; COUNT] {
     let size = slopes.len();
-    let is_exact = |accuracy: &VoltageAccuracy| accuracy.fraction == 0.0 && accuracy.volts == 0.0;
-    if accuracies.iter().all(is_exact) {
+    if accuracies.iter().all(VoltageAccuracy::is_exact) {
         return accuracies.map(|_| DMatrix::zeros(size, size));
     }
     let periods: Vec<(Dq, Dq, f64)> = objective.periods().collect();
@@ -55,13 +62,26 @@ pub(crate) fn covariances<const COUNT: usize>(
     });
     let of_a_volt = objective.by_voltage(drive, &weights.collect::<Vec<_>>());
     accuracies.map(|accuracy| {
-        if is_exact(&accuracy) {
+        if accuracy.is_exact() {
             return DMatrix::zeros(size, size);
         }
-        let VoltageAccuracy { fraction, volts } = accuracy;
+        let VoltageAccuracy { fraction, volts, across } = accuracy;
         let errors = periods.iter().map(|(u, ..)| ((fraction * u.d).powi(2) + (fraction * u.q).powi(2) + volts.powi(2)).sqrt());
-        cells.covariance(&errors.collect::<Vec<f64>>(), &of_a_volt)
+        let of_both_axes = cells.covariance(&errors.collect::<Vec<f64>>(), &of_a_volt);
+        if across == 0.0 {
+            return of_both_axes;
+        }
+        of_both_axes + cells.covariance(&vec![across; periods.len()], &across_currents(&periods, &of_a_volt))
     })
+}
+
+/// What a volt across the current does to each unknown: the whole of it in the place of d.
+fn across_currents(periods: &[(Dq, Dq, f64)], of_a_volt: &[Vec<Dq>]) -> Vec<Vec<Dq>> {
+    let across = |(effect, (_, i, _)): (&Dq, &(Dq, Dq, f64))| {
+        let magnitude = i.magnitude().max(f64::MIN_POSITIVE);
+        Dq { d: (i.d * effect.q - i.q * effect.d) / magnitude, q: 0.0 }
+    };
+    of_a_volt.iter().map(|effects| effects.iter().zip(periods).map(across).collect()).collect()
 }
 
 /// Periods gathered by their operating points.
@@ -119,5 +139,23 @@ impl Cells {
             }
         }
         covariance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The direction across (4, 3) is (-3, 4) / 5: nothing of a volt along the current, all of one across it.
+    #[test]
+    fn only_what_lies_across_the_current_counts() {
+        let period = (Dq::default(), Dq { d: 4.0, q: 3.0 }, 100.0);
+        let effects = [Dq { d: 8.0, q: 6.0 }, Dq { d: -0.6, q: 0.8 }, Dq { d: 0.0, q: 1.0 }];
+        let across: Vec<f64> = effects.iter().map(|effect| across_currents(&[period], &[vec![*effect]])[0][0].d).collect();
+        for (found, expected) in across.iter().zip([0.0, 1.0, 0.8]) {
+            assert!((found - expected).abs() < 1e-12, "{across:?}");
+        }
+        let standing = (Dq::default(), Dq::default(), 0.0);
+        assert_eq!(across_currents(&[standing], &[vec![Dq { d: 1.0, q: 1.0 }]])[0][0], Dq::default());
     }
 }
