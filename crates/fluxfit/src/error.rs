@@ -191,6 +191,11 @@ pub enum ErrorKind {
         /// Of both.
         ratio: f64,
     },
+    /// Torques that are proportional to their currents but for rounding.
+    #[error(
+        "the torque is what the formula of a motor makes of the currents, exactly but for rounding, so the drive (or a simulation) computed it from them with its own setting of psi_f or of the torque constant: of a motor it tells nothing; log the torque of a sensor, or leave this table out"
+    )]
+    ComputedTorque,
     /// Open-circuit voltages that the torque of the short circuit contradicts, or another table.
     #[error(
         "the voltages with open terminals and the other tables (torque, resistance, operating points) contradict each other, and would agree if the voltages were {factor:.4} times as large: check their unit, and whether they are line to line or of a phase, rms or amplitudes (state it in the column's name: 'U_ll_rms [V]', 'U_phase_peak [V]')"

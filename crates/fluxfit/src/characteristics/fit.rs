@@ -14,6 +14,7 @@ use super::{
     problem::{Problem, start},
     rows::{Instrument, RESIDUALS, Residual, Rows},
     steady_points::SteadyPoint,
+    torque_of_current::is_computed,
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -178,6 +179,10 @@ struct Checked {
 
 impl Checked {
     fn of(tables: &[Characteristic]) -> Result<Self, Error> {
+        let is_computed = |table: &Characteristic| matches!(table, Characteristic::TorqueOfCurrent(table) if is_computed(&table.rows));
+        if tables.iter().any(is_computed) {
+            return Err(ErrorKind::ComputedTorque.into());
+        }
         let (rows, voltages) = with_told_voltages(Rows::of(tables)?)?;
         let fit = Fit::of(&rows, rows.has_torque())?;
         let (rows, fit, of_loss) = without_gain(rows, fit)?;
