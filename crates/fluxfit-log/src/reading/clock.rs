@@ -14,6 +14,12 @@ const END: f64 = 0.01;
 /// Rows of a log that are this many seconds apart or more are unlikely: whole numbers with such steps are a count of something shorter.
 const LONG_STEP: f64 = 5.0;
 
+/// A count of the rows begins with one of these and goes on by one: so do whole seconds, of a recorder that writes a row a second.
+const FIRST_COUNTS: [f64; 2] = [0.0, 1.0];
+
+/// Fewest rows that are taken for a count, or under the name of seconds for another unit.
+const FEWEST: usize = 30;
+
 /// Days since 1900 of a spreadsheet and since the year 0 of MATLAB, over the years 1954 to 2119.
 const DAYS: [(std::ops::Range<f64>, &str); 2] =
     [(20_000.0..80_000.0, "days, as spreadsheets count them"), (714_000.0..774_000.0, "days, as MATLAB counts them")];
@@ -31,12 +37,16 @@ pub(super) struct Clock {
     is_open: bool,
     /// The first time and the divisor, if the times count from 1970, or are days; and what they are.
     since_1970: Option<(f64, f64, &'static str)>,
-    /// The times have a name that states no unit, so that s is an assumption.
+    /// Nothing writes their unit, so that s is an assumption.
     is_assumed: bool,
+    /// They have the channel's own name, which is in s.
+    is_named: bool,
     /// They may count the rows: then no whole number is in s.
     may_count: bool,
     /// The usual step of the first times, if they are whole numbers.
     step: Option<f64>,
+    /// The first times.
+    first: First,
     /// What is added to times, s.
     offset: f64,
     last: Option<f64>,
@@ -45,9 +55,11 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// Of times whose unit is stated or not, under their own name or one that says nothing of a unit, or that may count the rows.
-    pub(super) fn of(is_unit_stated: bool, is_alias: bool, may_count: bool) -> Self {
-        Self { is_open: !is_unit_stated, is_assumed: !is_unit_stated && is_alias, may_count, ..Self::default() }
+    /// Of times whose unit is stated or not, and written or not; under their own name or one that says nothing of a unit, or that may count
+    /// the rows.
+    pub(super) fn of(is_unit_stated: bool, is_unit_written: bool, is_alias: bool, may_count: bool) -> Self {
+        let is_assumed = !is_unit_stated && !is_unit_written;
+        Self { is_open: !is_unit_stated, is_assumed, is_named: !is_alias, may_count, ..Self::default() }
     }
 
     /// Makes times, s, continue where they wrapped around, in place. Those since 1970 count from the first one, so that their fractions
@@ -56,6 +68,7 @@ impl Clock {
         if self.is_open && !t.is_empty() {
             self.is_open = false;
             self.step = whole_step(t);
+            self.first = First::of(t);
             let of_days = || days(t).map(|what| (t[0], SECOND, what));
             self.since_1970 = epoch_digits(t).map(|(digits, what)| (t[0], 10_f64.powi(digits as i32), what)).or_else(of_days);
         }
@@ -86,9 +99,9 @@ impl Clock {
 
     /// The step of times that are unlikely to be in s, if nothing states their unit.
     pub(super) fn unstated_step(&self) -> Option<u64> {
-        let least = if self.may_count { 0.0 } else { LONG_STEP };
-        let step = self.step.filter(|step| self.is_assumed && self.since_1970.is_none() && *step >= least)?;
-        Some(step as u64)
+        let step = self.step.filter(|_| self.is_assumed && self.since_1970.is_none())?;
+        let is_long = step >= LONG_STEP && (!self.is_named || self.first != First::Few);
+        (self.may_count || is_long || self.first == First::Count).then_some(step as u64)
     }
 
     /// Notes on what was found.
@@ -99,6 +112,29 @@ impl Clock {
             format!("{what} wrapped around {times}; it is continued from there")
         });
         counted.into_iter().chain(wrapped).collect()
+    }
+}
+
+/// What the first times are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum First {
+    /// Too few to tell anything.
+    #[default]
+    Few,
+    /// 0, 1, 2, .. or 1, 2, 3, ..
+    Count,
+    Other,
+}
+
+impl First {
+    fn of(t: &[f64]) -> Self {
+        match t.first() {
+            Some(first) if t.len() >= FEWEST => {
+                let is_count = FIRST_COUNTS.contains(first) && t.windows(2).all(|pair| pair[1] - pair[0] == 1.0);
+                if is_count { Self::Count } else { Self::Other }
+            }
+            _ => Self::Few,
+        }
     }
 }
 
@@ -136,15 +172,33 @@ mod tests {
     /// 2023-03-15 is day 45000 of spreadsheets; 10 rows a second.
     #[test]
     fn days_of_a_spreadsheet_become_seconds() {
-        let mut clock = Clock::of(false, true, false);
+        let mut clock = Clock::of(false, false, true, false);
         let mut t: Vec<f64> = (0..50).map(|row| 45_000.25 + f64::from(row) * 0.1 / 86_400.0).collect();
         clock.settle(&mut t);
         assert!(t.iter().enumerate().all(|(row, t)| (t - row as f64 * 0.1).abs() < 1e-6), "{t:?}");
         assert_eq!(clock.notes(), ["t: by their size the times are days, as spreadsheets count them; t counts from the first one"]);
         let mut seconds: Vec<f64> = (0..50).map(|row| 45_000.0 + f64::from(row) * 1e-4).collect();
         let same = seconds.clone();
-        Clock::of(false, true, false).settle(&mut seconds);
+        Clock::of(false, false, true, false).settle(&mut seconds);
         assert_eq!(seconds, same);
+    }
+
+    /// Rows from 0 or 1 on may be a second apart or not, whatever they are called; from 17 on, or if one is missing, they are times.
+    #[test]
+    fn a_count_of_the_rows_is_no_time_unless_its_unit_is_written() {
+        let step = |is_written: bool, is_alias: bool, t: &mut [f64]| {
+            let mut clock = Clock::of(false, is_written, is_alias, false);
+            clock.settle(t);
+            clock.unstated_step()
+        };
+        let count = |first: u32, rows: u32| (first..first + rows).map(f64::from).collect::<Vec<f64>>();
+        for is_alias in [false, true] {
+            assert_eq!([0, 1, 17].map(|first| step(false, is_alias, &mut count(first, 50))), [Some(1), Some(1), None]);
+            assert_eq!((step(true, is_alias, &mut count(0, 50)), step(false, is_alias, &mut count(0, 3))), (None, None));
+            assert_eq!(step(false, is_alias, &mut [count(0, 40), count(41, 40)].concat()), None);
+            let mut hundreds: Vec<f64> = count(0, 50).into_iter().map(|time| 100.0 * time).collect();
+            assert_eq!((step(false, is_alias, &mut hundreds), step(true, is_alias, &mut hundreds)), (Some(100), None));
+        }
     }
 
     #[test]
@@ -158,12 +212,12 @@ mod tests {
 
     #[test]
     fn times_since_1970_count_from_the_first() {
-        let mut clock = Clock::of(false, false, false);
+        let mut clock = Clock::of(false, false, false, false);
         let (mut first, mut more) = (vec![1_455_273_060_500.0, 1_455_273_060_501.0], vec![1_455_273_060_502.0]);
         clock.settle(&mut first);
         clock.settle(&mut more);
         assert_eq!((first, more), (vec![0.0, 0.001], vec![0.002]));
-        let mut stated = Clock::of(true, false, false);
+        let mut stated = Clock::of(true, true, false, false);
         let mut t = vec![1_455_273_060.0, 1_455_273_061.0];
         stated.settle(&mut t);
         assert_eq!((t[0], stated.notes()), (1_455_273_060.0, vec![]));

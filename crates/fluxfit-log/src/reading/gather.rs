@@ -124,9 +124,11 @@ fn one_group(
     let mut counted = period.filter(|_| place(T).is_none()).map(|period| Counted { period, t: -period, run: None });
     let mut selection = Selection::new(columns.len() + usize::from(counted.is_some()), features(&place), most_rows);
     let is_unit_stated = place(T).is_some_and(|t| columns[t].is_unit_stated);
+    // Times of a group are those of a format that has them in s.
+    let is_unit_written = place(T).is_some_and(|t| columns[t].is_unit_written || table.heads()[columns[t].index].is_time);
     let is_alias = place(T).is_some_and(|t| columns[t].is_alias);
     let may_count = place(T).is_some_and(|t| columns[t].header == UNNAMED);
-    let mut clock = Clock::of(is_unit_stated, is_alias, may_count);
+    let mut clock = Clock::of(is_unit_stated, is_unit_written, is_alias, may_count);
     let mut refused: Vec<Option<FileError>> = vec![None; columns.len()];
     notes.extend(
         table

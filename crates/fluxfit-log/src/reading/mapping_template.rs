@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn a_written_mapping_keeps_what_was_given() {
-        let rows: String = (0..30).map(|row| format!("{row},3,4,1,2,{}\n", 500 + row)).collect();
+        let rows: String = (0..30).map(|row| format!("0.{row:02},3,4,1,2,{}\n", 500 + row)).collect();
         let given = "park = \"power-invariant\"\n[columns]\nud = { column = \"a\", scale = 0.01, sign = -1 }\nuq = \"b\"\n";
         let options = LogOptions { mapping: Mapping::parse("m.toml", given.as_bytes()).unwrap(), ..LogOptions::default() };
         let first = inspected(&format!("t,a,b,id,iq,omega_e\n{rows}"), &options);
@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn a_written_mapping_keeps_shares_of_the_dc_voltage() {
-        let rows: String = (0..30).map(|row| format!("{row},{},52,48,40,1,2,{},0.{}\n", 50 + row % 3, 500 + row, 100 + row)).collect();
+        let rows: String = (0..30).map(|row| format!("0.{row:02},{},52,48,40,1,2,{},0.{}\n", 50 + row % 3, 500 + row, 100 + row)).collect();
         let text = format!("t,duty_a [%],duty_b [%],duty_c [%],u_dc,id,iq,omega_e,theta_e\n{rows}");
         let first = inspected(&text, &LogOptions::default());
         let mapping = first.mapping(&LogOptions::default());
@@ -337,7 +337,7 @@ mod tests {
     /// A power-invariant vector is sqrt(3/2) times as long, in the stator's frame as in dq.
     #[test]
     fn the_scaling_of_the_clarke_transform_is_that_of_alpha_and_beta() {
-        let rows: String = (0..30).map(|k| format!("{k},3,4,1,2,{},{}\n", 0.1 * f64::from(k), 100 + k)).collect();
+        let rows: String = (0..30).map(|k| format!("0.{k:02},3,4,1,2,{},{}\n", 0.1 * f64::from(k), 100 + k)).collect();
         let text = format!("t,u_alpha,u_beta,i_alpha,i_beta,theta_e,omega_e\n{rows}");
         let lengths = ["", "park = \"power-invariant\"\n"].map(|park| {
             let options = LogOptions { mapping: Mapping::parse("m.toml", park.as_bytes()).unwrap(), ..LogOptions::default() };
