@@ -3,6 +3,7 @@
 
 use super::{channels::Channels, rounded_time::median};
 use crate::channel::Channel;
+use fluxfit_units::Dimension;
 
 /// Most rows, as a share, that have the time of the row behind them. Beyond, the time is something else, or was rounded.
 const MOST: f64 = 1.0 / 3.0;
@@ -13,30 +14,69 @@ const FEWEST: usize = 30;
 /// Times that differ by less than this share of the usual step are the same.
 const SAME: f64 = 1e-6;
 
+/// Times that differ by less than this share of the mean step are the same where the currents are: of some solvers the row before an event is
+/// a little before it.
+const NEAR: f64 = 1e-3;
+
+/// Of what currents change by otherwise, at most this share is changed within an event: they go on through it, whatever the voltages do.
+const CONTINUED: f64 = 1e-3;
+
+/// Fewest events of which that is believed.
+const FEWEST_EVENTS: usize = 5;
+
 /// Steps that may be too few or too many for a recorder's, by the rows that are stamped alike.
 const OF_A_RECORDER: f64 = 0.25;
+
+/// The channels that nothing makes jump: currents, and what turns with the rotor's inertia.
+const CONTINUOUS: [Channel; 9] =
+    [Channel::Id, Channel::Iq, Channel::IA, Channel::IB, Channel::IC, Channel::IAlpha, Channel::IBeta, Channel::OmegaE, Channel::ThetaE];
 
 /// Leaves out the rows that have the time of the row behind them: what comes after them starts behind the event. Returns a note.
 pub(super) fn settle(channels: &mut Channels) -> Option<String> {
     let t = channels.get(Channel::T)?;
-    let is_at_once = |pair: &[f64]| pair[0] == pair[1];
-    if t.len() < FEWEST || !t.windows(2).any(is_at_once) {
+    if t.len() < FEWEST {
+        return None;
+    }
+    let kept = of_continued_currents(channels, t).or_else(|| of_some_rows(t))?;
+    let left_out = kept.iter().filter(|kept| !**kept).count();
+    channels.retain(&kept);
+    let rows = if left_out == 1 { "1 row has".to_owned() } else { format!("{left_out} rows have") };
+    Some(format!("{rows} the time of the row behind, as simulations write them at events: left out"))
+}
+
+/// Which rows to keep where few have the time of the row behind.
+fn of_some_rows(t: &[f64]) -> Option<Vec<bool>> {
+    if !t.windows(2).any(|pair| pair[0] == pair[1]) {
         return None;
     }
     // One step more, of zero: there may be no other.
     let step = median(t.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0).chain([0.0]).collect());
-    let is_same = |pair: &[f64]| (0.0..=SAME * step).contains(&(pair[1] - pair[0]));
-    let kept: Vec<bool> = t.windows(2).map(|pair| !is_same(pair)).chain([true]).collect();
-    let left_out = kept.iter().filter(|kept| !**kept).count();
+    let kept = kept(t, SAME * step);
+    let left_out = kept.iter().filter(|kept| !**kept).count() as f64;
     // A recorder that stamps two rows alike leaves out the next stamp: with all rows there are as many steps as the time has.
     let missing = (t[t.len() - 1] - t[0]) / step - (t.len() - 1) as f64;
-    let is_recorder = missing.abs() <= OF_A_RECORDER * left_out as f64;
-    if is_recorder || left_out as f64 > MOST * t.len() as f64 {
-        return None;
-    }
-    channels.retain(&kept);
-    let rows = if left_out == 1 { "1 row has".to_owned() } else { format!("{left_out} rows have") };
-    Some(format!("{rows} the time of the row behind, as simulations write them at events: left out"))
+    let is_recorder = missing.abs() <= OF_A_RECORDER * left_out;
+    (!is_recorder && left_out <= MOST * t.len() as f64).then_some(kept)
+}
+
+/// Which rows to keep where currents and speed are those of the row behind, as no other two rows have them: however many there are.
+fn of_continued_currents(channels: &Channels, t: &[f64]) -> Option<Vec<bool>> {
+    let mean_step = (t[t.len() - 1] - t[0]) / (t.len() - 1) as f64;
+    let kept = kept(t, NEAR * mean_step);
+    let left_out = kept.iter().filter(|kept| !**kept).count();
+    let changes = |values: &[f64], within: bool| {
+        let pairs = values.windows(2).zip(&kept).filter(|(_, kept)| **kept != within);
+        pairs.map(|(pair, _)| (pair[1] - pair[0]).abs()).fold(0.0, |sum: f64, change| sum + change)
+    };
+    let mut currents = channels.iter().filter(|(channel, _)| CONTINUOUS.contains(channel)).map(|(_, values)| values);
+    let moves = channels.iter().any(|(channel, values)| channel.dimension() == Dimension::Current && changes(values, false) > 0.0);
+    let is_continued = currents.all(|values| changes(values, true) <= CONTINUED * changes(values, false));
+    (left_out >= FEWEST_EVENTS && moves && is_continued).then_some(kept)
+}
+
+/// Whether the row behind each row is later by more than this.
+fn kept(t: &[f64], same: f64) -> Vec<bool> {
+    t.windows(2).map(|pair| !(0.0..=same).contains(&(pair[1] - pair[0]))).chain([true]).collect()
 }
 
 #[cfg(test)]
@@ -58,6 +98,36 @@ mod tests {
         let (note, left) = settled(t);
         assert_eq!(note.unwrap(), "2 rows have the time of the row behind, as simulations write them at events: left out");
         assert!(left.iter().eq(even().collect::<Vec<f64>>().iter()), "{left:?}");
+    }
+
+    /// Each sample is an event, its first row at the time of the second one or a little before it: a voltage jumps, the current goes on.
+    #[test]
+    fn an_event_at_every_sample_is_told_by_the_currents() {
+        let current = |row: usize| (0.3 * row as f64).sin();
+        for before in [0.0, 1e-9] {
+            let both = |of: &dyn Fn(usize) -> [f64; 2]| (0..100).flat_map(of).collect::<Vec<f64>>();
+            let t = both(&|row| [row as f64 * 1e-4 - if row > 0 { before } else { 0.0 }, row as f64 * 1e-4]);
+            let columns = |behind: f64| {
+                vec![
+                    (Channel::T, t.clone()),
+                    (Channel::Ud, both(&|row| [row as f64, row as f64 + 1.0])),
+                    (Channel::Iq, both(&|row| [current(row), current(row) + behind])),
+                ]
+            };
+            let mut channels = Channels { columns: columns(0.0), ..Channels::default() };
+            assert!(settle(&mut channels).unwrap().starts_with("100 rows have the time of the row behind"));
+            assert!(channels.get(Channel::T).unwrap().iter().enumerate().all(|(row, t)| (t - row as f64 * 1e-4).abs() < 1e-15));
+            assert_eq!(channels.get(Channel::Ud).unwrap()[..2], [1.0, 2.0]);
+        }
+    }
+
+    /// The currents differ within them as from one to the next.
+    #[test]
+    fn two_samples_whose_time_was_rounded_are_no_event() {
+        let both = |of: &dyn Fn(usize) -> f64| (0..200).map(of).collect::<Vec<f64>>();
+        let t = both(&|row| (row / 2) as f64 * 1e-4);
+        let columns = vec![(Channel::T, t), (Channel::Iq, both(&|row| (0.3 * row as f64).sin()))];
+        assert_eq!(settle(&mut Channels { columns, ..Channels::default() }), None);
     }
 
     /// A recorder whose clock has whole milliseconds, each tenth of which it writes twice and leaves out the next; and one time throughout.

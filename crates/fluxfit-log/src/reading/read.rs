@@ -198,8 +198,8 @@ pub(super) fn read(mut table: Table, options: &ResolvedOptions) -> Result<ReadLo
     let named = layout.filter(|layout| !layout.is_canonical());
     let chosen = columns::choose(&table, named, options, &mut notes).map_err(|error| scope_trace::named(&mut table, options, error))?;
     let Gathered { mut channels, lines, is_interpolated, dropped_before } = gather(&mut table, &chosen, layout, options, &mut notes)?;
-    rounded_time::refuse(&chosen, &channels)?;
     notes.extend(event_times::settle(&mut channels).map(Note::from));
+    rounded_time::refuse(&chosen, &channels)?;
     notes.extend(even_time::settle(&mut channels).map(Note::from));
     let aligned = align::align(&mut channels, &lines)?;
     let gaps = gaps_of_file(&channels, &dropped_before);
