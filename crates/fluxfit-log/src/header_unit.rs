@@ -75,6 +75,9 @@ fn spelled(text: &str, dimension: Dimension, rotation: Rotation) -> Option<Unit>
 pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderUnit<'_>) {
     // Simulink writes signals in angle brackets.
     let header = header.trim().trim_start_matches('<').trim_end_matches('>');
+    if let Some(probed) = probed(header, dimension) {
+        return probed;
+    }
     let rotation = rotation(header);
     let brackets = [('[', ']'), ('(', ')'), ('（', '）')].into_iter().find_map(|(open, close)| {
         let at = header.strip_suffix(close)?.rfind(open)?;
@@ -110,6 +113,26 @@ pub(crate) fn split_header(header: &str, dimension: Dimension) -> (&str, HeaderU
     match spelled(header, dimension, rotation) {
         Some(unit) if header.len() > 1 && (unit != Unit::Kilovolt || header == "kV") => ("", HeaderUnit::Known(unit)),
         _ => (header, HeaderUnit::None),
+    }
+}
+
+/// A name as circuit simulators write what they probe, `V(ud)`, `I(Lq)`: the letter outside is the unit, and of a signal that is no voltage
+/// a voltage stands for it. None of `V(mV)`, `i(t)` and `V(1)`.
+fn probed(header: &str, dimension: Dimension) -> Option<(&str, HeaderUnit<'_>)> {
+    let letter = header.chars().next().filter(|letter| "VvIi".contains(*letter))?;
+    let name = header[1..].strip_prefix('(')?.strip_suffix(')')?;
+    let is_unit = |dimension| spelled(name, dimension, Rotation::Unstated).is_some();
+    let has_unit = [Dimension::Voltage, Dimension::Current, Dimension::Speed, Dimension::Angle].into_iter().any(is_unit);
+    let is_name = name.starts_with(char::is_alphabetic) && !["t", "time"].contains(&name.to_lowercase().as_str());
+    if !is_name || has_unit || dimension == Dimension::Time {
+        return None;
+    }
+    match (letter.to_ascii_lowercase(), dimension) {
+        ('v', Dimension::Voltage) => Some((name, HeaderUnit::Known(Unit::Volt))),
+        ('i', Dimension::Current) => Some((name, HeaderUnit::Known(Unit::Ampere))),
+        // The current through a source is not its voltage.
+        ('i', _) => None,
+        _ => Some((name, HeaderUnit::None)),
     }
 }
 
@@ -301,6 +324,13 @@ mod tests {
             ("vdq_mV(2,:)", Voltage, ("vdq", HeaderUnit::Known(Unit::Millivolt))),
             ("vdq [mV](:,1)", Voltage, ("vdq", HeaderUnit::Known(Unit::Millivolt))),
             ("ud (:)", Voltage, ("ud", HeaderUnit::Unknown(":"))),
+            ("V(ud)", Voltage, ("ud", HeaderUnit::Known(Unit::Volt))),
+            ("v(iq)", Current, ("iq", HeaderUnit::None)),
+            ("V(omega)", Speed, ("omega", HeaderUnit::None)),
+            ("I(Lq)", Current, ("Lq", HeaderUnit::Known(Unit::Ampere))),
+            ("I(Vq)", Voltage, ("I", HeaderUnit::Unknown("Vq"))),
+            ("V(mV)", Voltage, ("V", HeaderUnit::Known(Unit::Millivolt))),
+            ("i(t)", Current, ("i", HeaderUnit::Unknown("t"))),
             ("ü)", Speed, ("ü)", HeaderUnit::None)),
         ];
         for (header, dimension, expected) in cases {

@@ -67,6 +67,8 @@ enum Style {
     Date { items: Vec<Item<'static>>, order: &'static str, has_zone: bool },
     /// A time of day.
     Clock,
+    /// Days and a time since a start, `0 days 00:00:00.0001`.
+    Elapsed,
     /// A number and its unit, of so many ns.
     Count(f64),
 }
@@ -75,7 +77,9 @@ impl Instants {
     /// From the first cells of a column; none if they are other texts, or other numbers.
     pub(crate) fn of(cells: &[&str]) -> Option<Self> {
         let first = *cells.first()?;
-        let styles = if let Some((_, unit)) = counted(first) {
+        let styles = if elapsed(first).is_some() {
+            vec![Style::Elapsed]
+        } else if let Some((_, unit)) = counted(first) {
             vec![Style::Count(unit)]
         } else if first.contains(':') || first.len() > 8 && first.contains(['T', ' ', '_']) {
             Style::of_text(first)
@@ -93,7 +97,7 @@ impl Instants {
         // Of equal ones the first.
         let ((_, step), first, style) = fitting.reduce(|best, next| if next.0 < best.0 { next } else { best })?;
         let is_log = !matches!(style, Style::Epoch(..)) || (step as f64) < LONGEST_STEP * NANO as f64;
-        is_log.then_some(Self { first: if matches!(style, Style::Clock | Style::Count(_)) { 0 } else { first }, style })
+        is_log.then_some(Self { first: if matches!(style, Style::Clock | Style::Count(_) | Style::Elapsed) { 0 } else { first }, style })
     }
 
     /// Numbers of seconds, counted from zero.
@@ -132,6 +136,7 @@ impl Instants {
                 format!("dates ({order}) and times; t counts from {}{}", start(), if *has_zone { " UTC" } else { "" })
             }
             Style::Clock => "the time of day".to_owned(),
+            Style::Elapsed => "days and a time since the start".to_owned(),
             Style::Count(_) => "numbers with their unit".to_owned(),
         }
     }
@@ -182,6 +187,7 @@ impl Style {
                 counted(text).filter(|(_, unit)| unit == of_column).map(|(number, unit)| (number * unit).round() as i64)
             }
             Self::Epoch(digits, _) => epoch(text, *digits),
+            Self::Elapsed => elapsed(text),
             Self::Date { items, has_zone, .. } => {
                 let point = text.contains(',').then(|| text.replace(',', "."));
                 let mut parsed = Parsed::new();
@@ -208,6 +214,15 @@ pub(crate) fn counted(text: &str) -> Option<(f64, f64)> {
     let (_, unit) = UNITS.iter().find(|(name, _)| *name == unit)?;
     let number: f64 = number.trim().replace(',', ".").parse().ok()?;
     number.is_finite().then_some((number, *unit))
+}
+
+/// The ns of a time since a start, as pandas and Python write it, `-1 days +23:59:59.9`, `1 day, 0:00:01`.
+pub(crate) fn elapsed(text: &str) -> Option<i64> {
+    let (days, rest) = text.trim().split_once(" day")?;
+    let days: i64 = days.parse().ok()?;
+    let time = rest.strip_prefix('s').unwrap_or(rest).trim_start_matches([',', ' ', '+']);
+    let of_day = if time.is_empty() { 0 } else { Style::Clock.nanoseconds(time)? };
+    days.checked_mul(86_400 * NANO)?.checked_add(of_day)
 }
 
 /// A number of 10^-digits seconds, in ns, without rounding what a nanosecond can hold.
@@ -247,6 +262,9 @@ mod tests {
             ["20160212T103100", "20160212T103100.0001", "20160212T103101"],
             ["10:31:00", "10:31:00.0001", "10:31:01"],
             ["0 sec", "0.0001 sec", "1 sec"],
+            ["0 days 00:00:00", "0 days 00:00:00.000100000", "0 days 00:00:01"],
+            ["-1 days +23:59:59.5", "-1 days +23:59:59.500100", "0 days 00:00:00.500000"],
+            ["1 day, 0:00:00", "1 day, 0:00:00.000100", "1 day, 0:00:01"],
             ["5 ms", "5,1 ms", "1005 ms"],
         ] {
             let t = seconds(&cells);

@@ -178,3 +178,20 @@ pub(crate) fn are_lists(names: &[String]) -> String {
     let hold = if names.len() == 1 { "holds" } else { "hold" };
     format!("{} {hold} a list in each row", columns(names))
 }
+
+/// What to do with currents (`i`) or voltages (`u`) that are given by these columns of lengths and angles.
+pub(crate) fn polar(vectors: &[(&str, [String; 2])]) -> String {
+    let of_one = |(symbol, [length, angle]): &(&str, [String; 2])| {
+        let (length, angle) = (shorten(length), shorten(angle));
+        format!(
+            "{symbol}d = -'{length}' sin '{angle}' and {symbol}q = '{length}' cos '{angle}' if it counts from the q axis (an advance angle), {symbol}d = '{length}' cos '{angle}' and {symbol}q = '{length}' sin '{angle}' if from the d axis"
+        )
+    };
+    let all: Vec<String> = vectors.iter().flat_map(|(_, names)| names.clone()).collect();
+    let formulas: Vec<String> = vectors.iter().map(of_one).collect();
+    format!(
+        "{} are lengths and angles of vectors by their names, and the values of the axes are needed, as columns of peak values: {}; rms values times sqrt 2",
+        columns(&all),
+        formulas.join("; ")
+    )
+}

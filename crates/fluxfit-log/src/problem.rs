@@ -1,7 +1,7 @@
 //! What can be wrong with a log, or with what is stated about it.
 
 use crate::missing_columns::{
-    LineToLine, MODULATION, are_lists, are_not_in_it, are_rms, equal_axes, has_d_alone, may_be_table, missing_columns, not_measured,
+    LineToLine, MODULATION, are_lists, are_not_in_it, are_rms, equal_axes, has_d_alone, may_be_table, missing_columns, not_measured, polar,
     proposed_rms, shares, speed_by_name, without_time,
 };
 use crate::unclear_table::UnclearTable;
@@ -89,6 +89,11 @@ pub(crate) enum Problem {
         columns(.names)
     )]
     PowerMeter { names: Vec<String> },
+    #[error("{}", polar(.vectors))]
+    Polar {
+        /// Of currents (`i`) and voltages (`u`), the columns with length and angle.
+        vectors: Vec<(&'static str, [String; 2])>,
+    },
     #[error(
         "the names of its columns are numbers, as of a matrix over two quantities: of a flux linkage over i_d and i_q (a flux map, as of Motor-CAD or FEM) nothing is identified, and as the motor of a simulation it needs a row for each point, with columns id, iq, psi_d and psi_q (flux_map in a scenario)"
     )]
@@ -118,6 +123,22 @@ pub(crate) enum Problem {
         quote(.text), if *.whole == 1.0 { "" } else { " divided by 100" }
     )]
     Share { channel: &'static str, text: String, header: String, si: &'static str, whole: f64 },
+    #[error(
+        "{} in the header are counts of an encoder, and the log does not state how many a turn of the shaft has; write into a mapping file {channel} = {{ column = {header:?}, scale = .. }}, where the scale is {of_turn} times the number of pole pairs divided by the counts of a turn",
+        quote(.text)
+    )]
+    Counts {
+        channel: &'static str,
+        text: String,
+        header: String,
+        /// A turn, in rad or rad/s.
+        of_turn: &'static str,
+    },
+    #[error(
+        "{} in the header may be rad/s, turns in a second or counts of an encoder in a second; state the unit (rad/s, rad/s-mech, Hz-elec or Hz-mech); of counts write into a mapping file {channel} = {{ column = {header:?}, scale = .. }}, where the scale is 6.28319 times the number of pole pairs divided by the counts of a turn",
+        quote(.text)
+    )]
+    InverseSeconds { channel: &'static str, text: String, header: String },
     #[error(
         "the {what} is in {unit}, and converting it takes the number of pole pairs; state it, or state that the unit is {electrical_unit}"
     )]
@@ -322,7 +343,9 @@ impl Problem {
             Self::Json { .. } | Self::LongRecord { .. } | Self::Lvm { .. } | Self::Dbc { .. } | Self::Frame { .. } => FileErrorKind::Format,
             Self::NoDbc | Self::NoMessages => FileErrorKind::Request,
             Self::CanLog { .. } | Self::NoFrameTimes => FileErrorKind::Unsupported,
-            Self::OpenTerminals { .. } | Self::Trace { .. } | Self::Matrix | Self::PowerMeter { .. } => FileErrorKind::Columns,
+            Self::OpenTerminals { .. } | Self::Trace { .. } | Self::Matrix | Self::PowerMeter { .. } | Self::Polar { .. } => {
+                FileErrorKind::Columns
+            }
             Self::Gzip { .. } | Self::Document { .. } | Self::Npz | Self::NoRows => FileErrorKind::Format,
             Self::ConstantRows { .. } | Self::Container { .. } | Self::NoNumbers { .. } | Self::Lists { .. } | Self::ManyColumns { .. } => {
                 FileErrorKind::Format
@@ -355,6 +378,8 @@ impl Problem {
             | Self::ElectricalSpeedUnit
             | Self::UnitOfTool { .. }
             | Self::SpeedRotation { .. }
+            | Self::Counts { .. }
+            | Self::InverseSeconds { .. }
             | Self::TimeUnit { .. } => FileErrorKind::Unit,
             Self::RoundedTime { .. } => FileErrorKind::Data,
             Self::Rms { .. } => FileErrorKind::Unit,
@@ -407,7 +432,7 @@ impl Problem {
             Self::Shared { first, second } => map(&[first, second]),
             Self::MappedHeader { channel, nearest: Some(header), .. } => vec![Advice::MapColumns(vec![(channel, Some(header.clone()))])],
             Self::NotALog { advice, .. } => advice.iter().cloned().collect(),
-            Self::HeaderUnit { channel, .. } => vec![Advice::StateUnit { channel, unit: None }],
+            Self::HeaderUnit { channel, .. } | Self::InverseSeconds { channel, .. } => vec![Advice::StateUnit { channel, unit: None }],
             Self::UnclearTable(unclear) => unclear.advice(),
             Self::MappedUnit { column: "speed", .. } => vec![Advice::StateUnit { channel: "speed", unit: None }],
             Self::PolePairs { channel, electrical, .. } => {

@@ -19,6 +19,8 @@ pub(crate) struct UnclearTable {
     pub(crate) axis_currents: Option<AxisCurrents>,
     /// A speed of which nothing states the unit.
     pub(crate) speed: Option<String>,
+    /// The speed of shorted terminals, to be mapped beside both their current and their torque.
+    pub(crate) of_shorted: Option<String>,
     /// Quantities and columns that are called by their symbols alone.
     pub(crate) symbols: Vec<(&'static str, String)>,
 }
@@ -61,10 +63,19 @@ impl fmt::Display for AxisCurrents {
 }
 
 impl UnclearTable {
+    /// Whether nothing has to be stated.
+    pub(crate) fn is_clear(&self) -> bool {
+        Self { of_shorted: None, ..self.clone() } == Self::default()
+    }
+
     /// What the user can state: one of these, if there are several.
     pub(crate) fn advice(&self) -> Vec<Advice> {
         let first = |(quantity, headers): &(&'static str, Vec<String>)| Some((*quantity, headers.first()?.clone()));
-        let known: Vec<(&'static str, String)> = self.symbols.iter().cloned().chain(self.several.iter().filter_map(first)).collect();
+        let is_several = |quantity: &str| self.several.iter().any(|(several, _)| *several == quantity);
+        let of_shorted = self.of_shorted.iter().filter(|_| is_several("current") && is_several("torque") && !is_several("speed"));
+        let of_shorted = of_shorted.map(|header| ("speed", header.clone()));
+        let known: Vec<(&'static str, String)> =
+            self.symbols.iter().cloned().chain(of_shorted).chain(self.several.iter().filter_map(first)).collect();
         let with = |pairs: &[(&'static str, &String)]| {
             let others = known.iter().filter(|(quantity, _)| !pairs.iter().any(|(name, _)| covers(name, quantity)));
             let pairs = others.cloned().chain(pairs.iter().map(|(name, header)| (*name, (*header).clone())));

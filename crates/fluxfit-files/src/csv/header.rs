@@ -2,6 +2,7 @@
 
 use super::{
     beside_settings::{self, Samples},
+    levels::{self, Levels},
     record::{self, lines},
     scope::{self, Export},
     tidy::RowStyle,
@@ -141,6 +142,9 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
         } else if let Some(separator) = separator_line(line) {
             stated_separator = Some(separator);
         } else if !trimmed.trim_matches([',', ';', ' ', '\t']).is_empty() {
+            if let Some(header) = of_levels(text, start, stated_separator.or(of_rows), notes) {
+                return Ok(header);
+            }
             if titles.len() < TITLES && is_title(text, start, line, of_rows) {
                 titles.push(quote(trimmed));
                 continue;
@@ -181,6 +185,14 @@ fn names(text: &str, notes: &mut Vec<String>) -> Result<Header, FileError> {
         return Err(FileError::from(Problem::OneColumn { text: first.trim().to_owned() }).at_line(header.line));
     }
     Ok(header)
+}
+
+/// The header of names with further lines below them.
+fn of_levels(text: &str, start: usize, separator: Option<u8>, notes: &mut Vec<String>) -> Option<Header> {
+    let separator = separator.unwrap_or_else(|| most_frequent_separator(lines(&text[start..]).next().map_or("", |(_, line)| line)));
+    let Levels { names, units, body } = levels::find(text, start, separator)?;
+    notes.push("the lines above the rows are read as levels of names, or as what is stated of each".to_owned());
+    Some(Header { names, units, body, ..at(text, start, separator) })
 }
 
 fn at(text: &str, start: usize, separator: u8) -> Header {
@@ -319,7 +331,7 @@ const NAMES_AND_UNITS: usize = 2;
 const SETTINGS: usize = 3;
 
 /// What a row above the names that holds their units has in most of its cells.
-const UNITS: [&str; 22] = [
+pub(super) const UNITS: [&str; 22] = [
     "second", "volt", "ampere", "s", "ms", "us", "v", "mv", "kv", "a", "ma", "ka", "rpm", "krpm", "1/min", "min^-1", "rad/s", "rad", "deg",
     "°", "nm", "hz",
 ];

@@ -2,6 +2,7 @@
 
 mod beside_settings;
 pub mod header;
+mod levels;
 pub mod record;
 mod scope;
 pub mod tidy;

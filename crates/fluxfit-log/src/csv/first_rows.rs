@@ -1,7 +1,7 @@
 //! What the first rows of a table tell about its columns: which hold instants, which hold no numbers, and which can be no measured
 //! values.
 
-use crate::instant::{Instants, counted};
+use crate::instant::{Instants, counted, elapsed};
 use fluxfit_files::csv::{
     header::{Header, is_number},
     record::{first_record, number},
@@ -91,7 +91,7 @@ pub(super) fn instants(head: &str, header: &Header) -> Vec<Option<Instants>> {
         true => cell.bytes().take_while(u8::is_ascii_digit).count() >= EPOCH_DIGITS,
         false => {
             let digits = cell.bytes().filter(u8::is_ascii_digit).count();
-            counted(cell).is_some() || cell.starts_with(|c: char| c.is_ascii_alphanumeric()) && digits > 3
+            counted(cell).is_some() || elapsed(cell).is_some() || cell.starts_with(|c: char| c.is_ascii_alphanumeric()) && digits > 3
         }
     };
     if !first.iter().any(is_likely) {

@@ -20,6 +20,7 @@ mod serial_monitor;
 #[cfg(test)]
 mod tests;
 mod text;
+mod unit_cells;
 mod vesc_express;
 
 use crate::{
@@ -76,6 +77,8 @@ impl TextTable {
         if header.rows != RowStyle::Plain {
             text = text.with_rows(header.rows, header.body);
         }
+        text = unit_cells::without_units(text, &mut header);
+        notes.append(&mut text.notes);
         if let Some(fields) = vesc_express::fields(&header.names) {
             (header.names, header.units) = fields.into_iter().map(|(name, unit)| (name, unit.unwrap_or_default())).unzip();
         }

@@ -147,6 +147,8 @@ pub(super) fn is_alias(channel: Channel, head: &ColumnHead) -> bool {
         return false;
     }
     let Some((name, beside)) = named(channel, stem, unit) else { return false };
+    // The current through an inductance of the axis, `I(Lq)` of a circuit simulator.
+    let is_through = |names: [&str; 2]| head.name.trim().to_lowercase().starts_with("i(") && names.contains(&name.as_str());
     // Of `phase_current_a` the last letter is no unit.
     let is_named_phase = || is_of_named_phase(channel, stem) || is_of_named_phase(channel, field(&head.name));
     match channel {
@@ -163,8 +165,12 @@ pub(super) fn is_alias(channel: Channel, head: &ColumnHead) -> bool {
         // `d_V`: the unit says the quantity.
         Channel::Ud => is_of_axis(&name, "d", &VOLTAGE) || is_german(&name, &ALONG, &VOLTAGE) || has_unit && name == "d",
         Channel::Uq => is_of_axis(&name, "q", &VOLTAGE) || is_german(&name, &ACROSS, &VOLTAGE) || has_unit && name == "q",
-        Channel::Id => is_of_axis(&name, "d", &CURRENT) || is_german(&name, &ALONG, &CURRENT) || has_unit && name == "d",
-        Channel::Iq => is_of_axis(&name, "q", &CURRENT) || is_german(&name, &ACROSS, &CURRENT) || has_unit && name == "q",
+        Channel::Id => {
+            is_of_axis(&name, "d", &CURRENT) || is_german(&name, &ALONG, &CURRENT) || has_unit && name == "d" || is_through(["ld", "lsd"])
+        }
+        Channel::Iq => {
+            is_of_axis(&name, "q", &CURRENT) || is_german(&name, &ACROSS, &CURRENT) || has_unit && name == "q" || is_through(["lq", "lsq"])
+        }
         Channel::IA | Channel::IB | Channel::IC => is_of_phase(channel, &name, "i") || is_named_phase(),
         Channel::UA | Channel::UB | Channel::UC => is_of_phase(channel, &name, "u") || is_of_phase(channel, &name, "v") || is_named_phase(),
         Channel::UAlpha => is_of_axis(&name, "alpha", &VOLTAGE),

@@ -2,7 +2,7 @@
 
 use super::{
     bench_units::{StatedUnit, stated_unit},
-    resemblance::{is_reference, words},
+    resemblance::{is_reference, says_reference, words},
     table::Table,
 };
 use crate::{
@@ -95,10 +95,19 @@ pub(super) struct Found {
 }
 
 pub(super) fn found(index: usize, head: &ColumnHead) -> Option<Found> {
+    if is_reference(&head.name) { None } else { by_unit_or_name(index, head) }
+}
+
+/// The maximum of a wave, `U_max`: beside the voltage or the current itself it would be that of something else, as a limit.
+fn maximum(index: usize, head: &ColumnHead) -> Option<Found> {
+    let is_maximum = |word: &str| ["max", "maximum"].contains(&word);
+    let others: Vec<String> = words(&head.name).into_iter().filter(|word| !is_maximum(word)).collect();
+    let of_wave = |found: &Found| matches!(found.quantity, Quantity::Voltage | Quantity::Current);
+    by_unit_or_name(index, head).filter(|found| !says_reference(&others) && of_wave(found))
+}
+
+fn by_unit_or_name(index: usize, head: &ColumnHead) -> Option<Found> {
     let header = head.name.trim().to_owned();
-    if is_reference(&header) {
-        return None;
-    }
     let of = |quantity, has_unit, in_si, is_electrical| {
         Some(Found { index, header: header.clone(), described: described(head), quantity, has_unit, in_si, is_electrical, mapped: None })
     };
@@ -114,7 +123,10 @@ pub(super) fn found(index: usize, head: &ColumnHead) -> Option<Found> {
         StatedUnit::None => {}
     }
     let words = words(&header);
-    let quantity = Quantity::ALL.into_iter().find(|quantity| words.iter().any(|word| quantity.words().contains(&word.as_str())))?;
+    let has_word = |quantity: &Quantity| words.iter().any(|word| quantity.words().contains(&word.as_str()));
+    // `V_LL_amplitude`.
+    let is_symbol = || words.windows(2).any(|pair| ["u", "v", "e"].contains(&pair[0].as_str()) && ["ll", "ln"].contains(&pair[1].as_str()));
+    let quantity = Quantity::ALL.into_iter().find(has_word).or_else(|| is_symbol().then_some(Quantity::Voltage))?;
     of(quantity, false, quantity.assumed_unit(), false)
 }
 
@@ -148,6 +160,9 @@ impl Stated {
 /// If the table has no such column, its name states a unit of something else, or two are mapped to one quantity.
 pub(super) fn found_all(heads: &[ColumnHead], stated: &Stated) -> Result<Vec<Found>, FileError> {
     let mut columns: Vec<Found> = heads.iter().enumerate().filter_map(|(index, head)| found(index, head)).collect();
+    if columns.iter().all(|column| !matches!(column.quantity, Quantity::Voltage | Quantity::Current)) {
+        columns.extend(heads.iter().enumerate().filter_map(|(index, head)| maximum(index, head)));
+    }
     for (column, header) in &stated.map {
         map(&mut columns, heads, *column, header, stated.speed)?;
     }
@@ -157,6 +172,8 @@ pub(super) fn found_all(heads: &[ColumnHead], stated: &Stated) -> Result<Vec<Fou
         _ if is_axis => &[Quantity::Speed, Quantity::Voltage, Quantity::Current],
         [_, true, true] => &[Quantity::Speed, Quantity::Torque],
         [true, true, false] => &[Quantity::Current, Quantity::Torque],
+        // With a speed it would be that of shorted terminals.
+        [false, false, true] if stated.maps(&[Quantity::Torque]) => &[Quantity::Speed, Quantity::Voltage],
         [_, false, true] => &[Quantity::Voltage],
         _ => &[],
     };
@@ -254,7 +271,7 @@ pub(super) fn refuse_unclear<'a>(candidates: impl Iterator<Item = Vec<&'a Found>
         (!are_phases).then(|| (of_one[0].quantity.name(), headers))
     });
     let unclear = UnclearTable { several: several.collect(), ..unclear };
-    if unclear == UnclearTable::default() { Ok(()) } else { Err(Problem::UnclearTable(unclear).into()) }
+    if unclear.is_clear() { Ok(()) } else { Err(Problem::UnclearTable(unclear).into()) }
 }
 
 /// Letters and digits of three phases.

@@ -42,21 +42,37 @@ pub(super) fn convention(column: &Found, quantity: Quantity, pole_pairs: Option<
 }
 
 /// Ends of words that are amplitudes.
-const AMPLITUDES: [&str; 13] = [
+const AMPLITUDES: [&str; 20] = [
     "peak",
     "pk",
     "0p",
     "amplitude",
     "amplitudes",
+    "amplitud",
+    "ampiezza",
     "ampl",
     "vamp",
     "crest",
+    "crete",
+    "crête",
+    "picco",
+    "pico",
     "spitze",
+    "spitzenwert",
     "spitzenspannung",
     "scheitel",
     "scheitelwert",
     "峰值",
 ];
+
+/// Of a wave its amplitude, of rms values the largest.
+const MAXIMA: [&str; 2] = ["max", "maximum"];
+
+/// Whole words that are amplitudes.
+const HATS: [&str; 6] = ["hat", "uhat", "vhat", "ehat", "ihat", "dach"];
+
+/// Words of voltages between two terminals beside which `p` is no phase: `Vll_p`.
+const LINES: [&str; 5] = ["ll", "vll", "ull", "ell", "line"];
 
 /// The rms value over what a column holds, what that is, and whether its name states it.
 fn to_rms(name: &str) -> (f64, &'static str, bool) {
@@ -72,6 +88,8 @@ fn to_rms(name: &str) -> (f64, &'static str, bool) {
     // `Vpp`, but not `V_app`; in brackets amperes, too.
     let is_pp = |word: &String| word == "pp" || ["vpp", "upp", "ipp", "epp"].iter().any(|end| word.ends_with(end));
     let between = |one: &str| words.windows(3).any(|of| of[0].ends_with(one) && of[1] == "to" && of[2] == one);
+    let is_peak_of_lines = words.iter().any(|word| LINES.contains(&word.as_str())) && words.iter().any(|word| word == "p")
+        || words.iter().any(|word| LINES.iter().any(|line| word.strip_prefix(line) == Some("p")));
     let is_from_zero = words.windows(2).any(|pair| pair[0] == "0" && pair[1] == "p");
     if words.iter().any(is_pp)
         || in_brackets.iter().any(|word| word.ends_with("pp"))
@@ -86,6 +104,9 @@ fn to_rms(name: &str) -> (f64, &'static str, bool) {
         (0.125_f64.sqrt(), "peak to peak", true)
     } else if is_peak
         || is_from_zero
+        || is_peak_of_lines
+        || ends(&MAXIMA) && !ends(&["rms", "eff"])
+        || words.iter().any(|word| HATS.contains(&word.as_str()))
         || name.contains(['û', 'Û', 'î', 'Î'])
         || ends(&AMPLITUDES)
         || words.first().is_some_and(|word| word.starts_with(['v', 'u'])) && words.iter().any(|word| word == "amp")
@@ -248,6 +269,15 @@ mod tests {
             ("线电压有效值(V)", 1.0, true),
             ("Voltage (V AC)", 1.0, false),
             ("Vp [V]", 1.0, false),
+            ("Vll_p", 2.0 * eighth, true),
+            ("U_LL p [V]", 2.0 * eighth, true),
+            ("Vllp (V)", 2.0 * eighth, true),
+            ("U_max [V]", 2.0 * eighth, true),
+            ("Vll max (V)", 2.0 * eighth, true),
+            ("Umax_ll", 2.0 * eighth, true),
+            ("Urms max [V]", 1.0, true),
+            ("u_hat [V]", 2.0 * eighth, true),
+            ("Ampiezza tensione concatenata [V]", 2.0 * eighth, true),
         ] {
             let (found, _, states) = to_rms(name);
             assert_eq!((found, states), (factor, is_stated), "{name}");

@@ -10,6 +10,7 @@ use super::{
     layout::NotALog,
     mapping::Park,
     options::LogOptions,
+    polar,
     proposal::propose,
     resemblance::{fit, words},
     steady_points,
@@ -89,6 +90,15 @@ fn read(mut table: Table, stated: &Stated) -> Result<Option<ReadCharacteristic>,
         return Ok(None);
     }
     let columns = found_all(&heads, stated)?;
+    // All of such a current would be taken for i_q, or for that of shorted terminals.
+    let names = || heads.iter().map(|head| head.name.clone()).collect::<Vec<String>>();
+    if stated.map.is_empty()
+        && !heads.iter().any(is_of_log)
+        && NotALog::by_names(&names()).is_none()
+        && let Some(problem) = polar::problem(&heads)
+    {
+        return Err(problem.into());
+    }
     let mapped: Vec<(&'static str, String)> =
         columns.iter().filter_map(|column| Some((column.mapped?.name(), column.header.clone()))).collect();
     let Some(read) = read_columns(&mut table, columns, stated)? else {
@@ -204,7 +214,8 @@ fn read_columns(table: &mut Table, columns: Vec<Found>, stated: &Stated) -> Resu
     let of_frequency = of_all[Quantity::Speed as usize].first().filter(|(column, _)| column.is_electrical && has_shaft);
     let electrical = of_frequency.filter(|_| pole_pairs.is_none()).map(|(column, _)| column.header.clone());
     let speed = of_all[Quantity::Speed as usize].iter().find(|(column, _)| lacks_unit(column)).map(|(column, _)| column.header.clone());
-    let unclear = UnclearTable { electrical, speed, ..UnclearTable::default() };
+    let of_shorted = of_all[Quantity::Speed as usize].first().map(|(column, _)| column.header.clone());
+    let unclear = UnclearTable { electrical, speed, of_shorted, ..UnclearTable::default() };
     // Of open terminals no torque is used.
     let asked =
         Quantity::ALL.into_iter().filter(|quantity| *quantity != Quantity::Torque || !of_all[Quantity::Current as usize].is_empty());
@@ -360,9 +371,13 @@ mod tests {
             ("L-N (V rms)", 0.5_f64.sqrt(), Some(Across::Phase)),
             ("Voltage (V AC)", 0.5_f64.sqrt(), None),
             ("Vpp", 2.0, None),
+            ("Vll_p", lines, Some(Across::Lines)),
+            ("Vll_max", lines, Some(Across::Lines)),
+            ("V_LL_amplitude", lines, Some(Across::Lines)),
+            ("Uab_max [V]", lines, Some(Across::Lines)),
         ] {
             let rows = [1.0, 2.0, 3.0].map(|k| format!("{},{}\n", 1000.0 * k, k * factor * amplitude)).concat();
-            let read = of(format!("speed [rad/s],{voltage}\n{rows}").leak()).unwrap().unwrap();
+            let read = of(format!("speed [rad/s],{voltage}\n{rows}").leak()).unwrap().expect(voltage);
             let Characteristic::OpenCircuit(table) = read.table else { panic!("{voltage}") };
             let of_phase = if across == Some(Across::Lines) { 1.0 / lines } else { 1.0 };
             let rms = table.rows[2].voltage * of_phase;
@@ -432,6 +447,23 @@ mod tests {
             let refusal = mapped(dyno, map, None).unwrap_err().to_string();
             assert!(refusal.contains(said), "{map:?}: {refusal}");
         }
+    }
+
+    /// As of a power meter beside a torque sensor: two speeds, at each any current. With the speed mapped too, terminals are shorted.
+    #[test]
+    fn a_mapped_current_beside_a_mapped_torque_is_that_of_a_load() {
+        let text = "Speed [rpm],I_SIGMA [A],Torque [Nm],other [A]\n500,10,1,0\n500,20,2,0\n1000,10,1,0\n1000,30,3,0\n";
+        let map = [("current", "I_SIGMA [A]"), ("torque", "Torque [Nm]")];
+        let read = mapped(text, &map, None).unwrap().unwrap();
+        assert!(matches!(read.table, Characteristic::TorqueOfCurrent(_)), "{:?}", read.table);
+        assert!(read.notes.iter().any(|note| note.to_string().contains("map \"Speed [rpm]\" as speed too")), "{:?}", read.notes);
+        let shorted = mapped(text, &[&map[..], &[("speed", "Speed [rpm]")]].concat(), None).unwrap().unwrap();
+        assert!(matches!(shorted.table, Characteristic::ShortCircuit(_)));
+        // Of shorted terminals that several columns could be, the speed is proposed, too.
+        let several = of("n_rpm,I1 [A],I4 [A],M1 [Nm],torque shaft [Nm]\n1,2,3,4,5\n2,2,3,4,5\n").unwrap_err();
+        let pairs = [("speed", "n_rpm"), ("current", "I1 [A]"), ("torque", "M1 [Nm]")];
+        let pairs = pairs.map(|(name, header)| (name, Some(header.to_owned())));
+        assert_eq!(several.advice(), [fluxfit_files::Advice::MapColumns(pairs.to_vec())]);
     }
 
     /// Of three phases the mean is taken: 11 V.

@@ -3,13 +3,14 @@
 use super::{
     alias,
     chosen::ChosenColumn,
+    counts,
     doubt::doubt,
     duty,
     layout::{Layout, NotALog, is_called},
     line_to_line,
     names::{automatic, mapped, only, positions},
     options::ResolvedOptions,
-    power_meter,
+    polar, power_meter,
     proposal::{Proposed, current_unit_of_tool, is_angular, propose, propose_needed, unit_of_speed, unit_of_tool},
     resemblance::{fit, has_other_unit, is_reference},
 };
@@ -399,6 +400,9 @@ impl Finder<'_> {
         if let Some(names) = power_meter::element(self.heads).filter(|_| missing.iter().any(|channel| [Ud, Uq, UA, UB].contains(channel))) {
             return Problem::PowerMeter { names }.into();
         }
+        if let Some(problem) = polar::problem(self.heads) {
+            return problem.into();
+        }
         // References are not proposed for measured currents.
         let present = self.names();
         let currents: Vec<Channel> = missing.iter().copied().filter(|channel| channel.dimension() == Dimension::Current).collect();
@@ -516,6 +520,9 @@ impl Finder<'_> {
             // The scale in a mapping file leads from there to SI.
             (None, _, HeaderUnit::Unknown(_)) if self.options.factor(channel).abs() != 1.0 => si,
             (None, _, HeaderUnit::Unknown(text)) => {
+                if let Some(problem) = counts::problem(channel, text, name) {
+                    return Err(problem.into());
+                }
                 let header = name.to_owned();
                 if let Some(whole) = share(text) {
                     let text = text.to_owned();

@@ -4,7 +4,7 @@
 
 use super::{
     axis_currents::{self, OfD, OfQ, is},
-    bench_columns::{Found, INSTANT, Stated, is_direct, is_driven, refuse_unclear, values_of},
+    bench_columns::{Found, INSTANT, Stated, found, is_direct, is_driven, refuse_unclear, values_of},
     bench_convention::{convention, lacks_unit, points, states_wave},
     bench_units::{StatedUnit, stated_unit},
     duty,
@@ -122,11 +122,19 @@ pub(super) fn read(table: &mut Table, columns: &[Found], stated: &Stated) -> Res
             let d = axis_currents::of_d(&heads, columns, None);
             let read =
                 torque_of_current(table, &d, Axis { index: current.index, factor, is_rms: true, tells_unit: true }, columns, torque)?;
-            let notes = notes.into_iter().chain(read.notes.into_iter().skip(1)).collect();
+            let notes = notes.into_iter().chain(read.notes.into_iter().skip(1)).chain(unused_speed(&heads, stated)).collect();
             Ok(Some(ReadCharacteristic { notes, ..read }))
         }
         _ => Ok(None),
     }
+}
+
+/// A note on the speed beside a current and a torque that are mapped: with it, they are those of shorted terminals.
+fn unused_speed(heads: &[ColumnHead], stated: &Stated) -> Option<Note> {
+    let is_speed = |(index, head)| found(index, head).filter(|found| found.quantity == Quantity::Speed);
+    let speed = heads.iter().enumerate().find_map(is_speed).filter(|_| !stated.map.is_empty())?;
+    let sentence = "current and torque are read as those of a driven or held motor, whatever the speed";
+    Some(format!("{sentence}; if its terminals were shorted, map {} as speed too", quote(&speed.header)).into())
 }
 
 /// The values of some columns, those that are rows of the test: finite in all of them.
