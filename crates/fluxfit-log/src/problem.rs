@@ -316,7 +316,13 @@ pub(crate) enum Problem {
     Frame { text: String },
     #[error("the DBC names no message that the log has twice or more; state that of this bus")]
     NoMessages,
-    #[error("this is {what}; convert it to candump's format or to MDF 4")]
+    #[error(
+        "this is an export of an oscilloscope of Yokogawa, whose samples have no times; delete the lines above the samples but TraceName, write t for that word, and add the times HOffset + k HResolution in s as first cells; of voltages of a motor that is turned with open terminals, write frequency and rms voltage of each speed into a table with the columns 'f [Hz]' and 'U_ll_rms [V]' (of a phase, 'U_phase_rms [V]')"
+    )]
+    Yokogawa,
+    #[error(
+        "this is {what}; convert it to candump's format or to MDF 4 (python-can: python -m can.logconvert IN OUT.log), and state the DBC that names its signals"
+    )]
     CanLog { what: &'static str },
 
     // What is stated about a log
@@ -342,7 +348,7 @@ impl Problem {
         match self {
             Self::Json { .. } | Self::LongRecord { .. } | Self::Lvm { .. } | Self::Dbc { .. } | Self::Frame { .. } => FileErrorKind::Format,
             Self::NoDbc | Self::NoMessages => FileErrorKind::Request,
-            Self::CanLog { .. } | Self::NoFrameTimes => FileErrorKind::Unsupported,
+            Self::CanLog { .. } | Self::NoFrameTimes | Self::Yokogawa => FileErrorKind::Unsupported,
             Self::OpenTerminals { .. } | Self::Trace { .. } | Self::Matrix | Self::PowerMeter { .. } | Self::Polar { .. } => {
                 FileErrorKind::Columns
             }

@@ -27,8 +27,8 @@ const KEYS: [&str; 12] = [
 
 /// Types of numbers, of which a line may consist.
 const TYPES: [&str; 22] = [
-    "double", "single", "float", "float32", "float64", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "boolean", "bool",
-    "real", "lreal", "int", "dint", "uint", "udint", "logical",
+    "double", "single", "float", "float32", "float64", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "boolean",
+    "bool", "real", "lreal", "int", "dint", "uint", "udint", "logical",
 ];
 
 /// The names of the columns, their units and where the rows begin.
@@ -45,17 +45,15 @@ pub(super) fn find(text: &str, start: usize, separator: u8) -> Option<Levels> {
     if names.len() < 2 || names.iter().any(|name| is_number(name)) {
         return None;
     }
-    let mut body = start + length;
     let mut above: Vec<Vec<String>> = Vec::new();
     for (offset, line) in lines(&text[start + length..]).filter(|(_, line)| !line.trim().is_empty()).take(MOST + 1) {
         let (cells, _) = first_record(line, separator);
-        body = start + length + offset;
+        let body = start + length + offset;
         if cells.iter().any(|cell| is_number(cell)) {
-            return of_keys(&names, &above).or_else(|| of_types(&names, &above)).or_else(|| two(&names, &above)).map(|(names, units)| Levels {
-                names,
-                units,
-                body,
-            });
+            return of_keys(&names, &above)
+                .or_else(|| of_types(&names, &above))
+                .or_else(|| two(&names, &above))
+                .map(|(names, units)| Levels { names, units, body });
         }
         if cells.len() > names.len() {
             return None;

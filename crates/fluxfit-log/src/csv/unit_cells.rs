@@ -16,8 +16,7 @@ const PREFIXED: [&str; 5] = ["V", "A", "W", "Hz", SECOND];
 const SECOND: &str = "s";
 
 /// Prefixes, as powers of ten.
-const PREFIXES: [(&str, &str); 8] =
-    [("", ""), ("n", "e-9"), ("µ", "e-6"), ("μ", "e-6"), ("u", "e-6"), ("m", "e-3"), ("k", "e3"), ("M", "e6")];
+const PREFIXES: [(&str, i32); 8] = [("", 0), ("n", -9), ("µ", -6), ("μ", -6), ("u", -6), ("m", -3), ("k", 3), ("M", 6)];
 
 /// Other units.
 const OTHERS: [&str; 14] = ["rpm", "RPM", "r/min", "1/min", "min-1", "rad/s", "rad", "deg", "°", "deg/s", "°/s", "°C", "Nm", "%"];
@@ -26,7 +25,7 @@ const OTHERS: [&str; 14] = ["rpm", "RPM", "r/min", "1/min", "min-1", "rad/s", "r
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct CellUnit {
     of_column: &'static str,
-    power: &'static str,
+    power: i32,
 }
 
 /// The text with numbers in the place of such cells, if all cells of some columns are such; their units are those of the columns.
@@ -39,7 +38,7 @@ pub(super) fn without_units(text: Text, header: &mut Header) -> Text {
     }
     let of_column = |place: usize| {
         let cells = table.iter().filter_map(|row| row.get(place)).filter(|cell| !cell.is_empty());
-        let units: Option<Vec<CellUnit>> = cells.map(|cell| split(cell).map(|(_, unit)| unit)).collect();
+        let units: Option<Vec<CellUnit>> = cells.map(|cell| split(cell).map(|(.., unit)| unit)).collect();
         let units = units.filter(|units| !units.is_empty())?;
         let is_one = units.iter().all(|unit| unit.of_column == units[0].of_column);
         let is_of_times = units[0].of_column == SECOND && units.iter().all(|unit| unit == &units[0]);
@@ -65,27 +64,26 @@ pub(super) fn without_units(text: Text, header: &mut Header) -> Text {
     text
 }
 
-/// The number at the beginning of a cell, and the unit behind it.
-fn split(cell: &str) -> Option<(&str, CellUnit)> {
-    let digits = cell.find(|c: char| !(c.is_ascii_digit() || "+-., ".contains(c))).unwrap_or(cell.len());
-    let exponent = cell[digits..].strip_prefix(['e', 'E']).map_or(0, |rest| {
-        let length = rest.find(|c: char| !(c.is_ascii_digit() || "+-".contains(c))).unwrap_or(rest.len());
-        if length > 0 { length + 1 } else { 0 }
-    });
-    let (number, unit) = cell.split_at(digits + exponent);
-    let (number, unit) = (number.trim_end(), unit.trim());
-    let is_number = number.contains(|c: char| c.is_ascii_digit()) && !number.contains(' ');
+/// The digits and the exponent of the number at the beginning of a cell, and the unit behind it.
+fn split(cell: &str) -> Option<(&str, i32, CellUnit)> {
+    let length = |text: &str, marks: &str| text.find(|c: char| !(c.is_ascii_digit() || marks.contains(c))).unwrap_or(text.len());
+    let (digits, rest) = cell.split_at(length(cell, "+-., "));
+    let (exponent, unit) = match rest.strip_prefix(['e', 'E']).map(|behind| behind.split_at(length(behind, "+-"))) {
+        Some((exponent, unit)) if !exponent.is_empty() => (exponent.parse().ok()?, unit),
+        _ => (0, rest),
+    };
+    let (digits, unit) = (digits.trim_end(), unit.trim());
+    let is_number = digits.contains(|c: char| c.is_ascii_digit()) && !digits.contains(' ');
     let prefixed = || {
         PREFIXED.into_iter().find_map(|base| {
             let prefix = unit.strip_suffix(base)?;
             let (_, power) = PREFIXES.iter().find(|(name, _)| *name == prefix)?;
-            Some(CellUnit { of_column: base, power })
+            Some(CellUnit { of_column: base, power: *power })
         })
     };
-    let other = || OTHERS.into_iter().find(|other| *other == unit).map(|of_column| CellUnit { of_column, power: "" });
-    // A number with an exponent takes no other one.
-    let unit = prefixed().or_else(other).filter(|unit| exponent == 0 || unit.power.is_empty())?;
-    is_number.then_some((number, unit))
+    let other = || OTHERS.into_iter().find(|other| *other == unit).map(|of_column| CellUnit { of_column, power: 0 });
+    let unit = prefixed().or_else(other).filter(|_| is_number)?;
+    Some((digits, exponent, unit))
 }
 
 /// Rows in which numbers stand in the place of such cells.
@@ -124,12 +122,17 @@ impl<R: Read> Numbers<R> {
         let wanted = self.units.get(column).copied().flatten();
         let text = wanted.and_then(|_| str::from_utf8(cell).ok());
         let bare = text.map(|text| text.trim().trim_matches('"').trim());
-        match bare.and_then(split).filter(|(_, unit)| Some(unit.of_column) == wanted) {
+        match bare.and_then(split).filter(|(.., unit)| Some(unit.of_column) == wanted) {
             // Another unit stays, and is refused as no number.
             None => self.changed.extend_from_slice(cell),
-            Some((number, unit)) => {
-                let mark = if number.as_bytes().contains(&self.separator) { "\"" } else { "" };
-                [mark, number, unit.power, mark].iter().for_each(|part| self.changed.extend_from_slice(part.as_bytes()));
+            Some((digits, exponent, unit)) => {
+                let mark = if digits.as_bytes().contains(&self.separator) { "\"" } else { "" };
+                // With the power as exponent, the number is the one that the decimals say.
+                let power = match exponent.saturating_add(unit.power) {
+                    0 => String::new(),
+                    power => format!("e{power}"),
+                };
+                [mark, digits, &power, mark].iter().for_each(|part| self.changed.extend_from_slice(part.as_bytes()));
             }
         }
     }
@@ -176,6 +179,7 @@ mod tests {
         let text = "t,iq,ud,n,state\n0 ms,0.0244 A,1.2 V,1500 rpm,on\n900 µs,24.4 mA,-120mV,1.5e3 rpm,on\n2 ms,,\"3 V\",2 rpm,off\n";
         let rows = "0e-3,0.0244,1.2,1500,on\n900e-6,24.4e-3,-120e-3,1.5e3,on\n2e-3,,3,2,off\n";
         assert_eq!(read(text), (rows.to_owned(), ["s", "A", "V", "rpm", ""].map(str::to_owned).to_vec()));
+        assert_eq!(read("x,iq\n1,0.5 A\n2,5e-02 mA\n").0, "1,0.5\n2,5e-5\n");
         let comma = "x;iq\n1;0,5 A\n2;500 mA\n";
         assert_eq!(read(comma).0, "1;0,5\n2;500e-3\n");
         assert_eq!(read("x,iq\n1,\"0,5 A\"\n2,\"0,7 A\"\n").0, "1,\"0,5\"\n2,\"0,7\"\n");

@@ -2,6 +2,7 @@
 //! usual ones, and one column alone has to have it; names that merely resemble one are only proposed.
 
 use super::{
+    counts,
     resemblance::{is_parameter, is_reference, says_reference, words},
     vocabulary::{
         ACROSS, ALONG, ANGLE, BEFORE_SPEED, BESIDE, CONTROLLER, CURRENT, CURRENT_VECTOR, MEASURED, ROTATION, SPEED, TIME, UDC, VOLTAGE,
@@ -136,7 +137,11 @@ pub(super) fn is_alias(channel: Channel, head: &ColumnHead) -> bool {
     let of_row = head.unit.as_deref().filter(|unit| !matches!(unit.trim(), "" | "-"));
     let in_row = of_row.map(|unit| matches!(unit_in_row(unit, &head.name, dimension), HeaderUnit::Known(_)));
     let (stem, unit) = stem(channel, &head.name);
+    // Of counts it is asked how many a turn has.
+    let is_asked = |text: &str| counts::problem(channel, text, &head.name).is_some();
     let has_unit = match (unit, in_row) {
+        (HeaderUnit::Unknown(text), None) if is_asked(text) => false,
+        (HeaderUnit::None, Some(false)) if of_row.is_some_and(is_asked) => false,
         // A unit of another dimension, or none that is known.
         (HeaderUnit::Unknown(_), _) | (HeaderUnit::None, Some(false)) => return false,
         (HeaderUnit::Known(_), _) | (_, Some(true)) => true,
@@ -234,10 +239,20 @@ fn named(channel: Channel, stem: &str, unit: HeaderUnit) -> Option<(String, Vec<
         [('ä', "ae"), ('à', "a"), ('é', "e"), ('ó', "o"), ('ö', "oe")].iter().for_each(|(from, to)| word = word.replace(*from, to));
         word
     };
-    let (mut beside, names): (Vec<String>, Vec<String>) = words(stem).into_iter().partition(is_beside);
+    let (mut beside, names): (Vec<String>, Vec<String>) = without_identifier(words(stem)).into_iter().partition(is_beside);
     beside.sort();
     let may_be_unit = matches!(dimension, Dimension::Time | Dimension::Speed) && matches!(unit, HeaderUnit::Known(_)) && stem.is_empty();
     (!names.is_empty() || may_be_unit).then(|| (names.iter().map(plain).collect(), beside))
+}
+
+/// The words behind the number of a parameter, as drives write it before its name: `r0076 Stromistwert`, `P-0-0043, Strom`.
+fn without_identifier(mut words: Vec<String>) -> Vec<String> {
+    let are_digits = |word: &String, count: usize| word.len() == count && word.bytes().all(|byte| byte.is_ascii_digit());
+    let of_siemens = words.first().is_some_and(|word| word.len() == 5 && is_parameter(word));
+    let of_sercos =
+        matches!(&words[..], [kind, set, number, ..] if ["s", "p"].contains(&kind.as_str()) && are_digits(set, 1) && are_digits(number, 4));
+    words.drain(..if of_sercos { 3 } else { usize::from(of_siemens) });
+    words
 }
 
 /// Shortest name of a quantity that is a word.

@@ -30,8 +30,14 @@ const LETTERS: &str = "abcdefgh";
 /// What an oscilloscope calls its horizontal axis, and a number of the sample on it, where the time is not stated in so many words.
 const HORIZONTAL: [&str; 5] = ["x", "xaxis", "source", "sequence", "second"];
 
-/// Further columns of Rigol's traces: the time of the first sample, and that between two.
+/// Further columns of Rigol's traces: the time of the first sample, and that between two; as names alone, or with the number, `t0 = -6e-3`.
 const START_AND_STEP: [&str; 2] = ["start", "increment"];
+const START_AND_STEP_BEFORE: [&str; 2] = ["t0 =", "tInc ="];
+
+fn is_start_or_step(head: &ColumnHead) -> bool {
+    let name = head.name.trim();
+    START_AND_STEP.iter().any(|word| name.eq_ignore_ascii_case(word)) || START_AND_STEP_BEFORE.iter().any(|start| name.starts_with(start))
+}
 
 /// Most channels of an instrument.
 const MOST_INPUTS: usize = 16;
@@ -56,7 +62,7 @@ pub(super) fn named(table: &mut Table, options: &ResolvedOptions, refusal: FileE
 /// Whether the columns are a time and an instrument's channels, and nothing else.
 fn is_trace(heads: &[ColumnHead]) -> bool {
     let name = |head: &ColumnHead| resemblance::words(&head.name).concat();
-    let named = |head: &&ColumnHead| !head.name.is_empty() && !START_AND_STEP.contains(&name(head).as_str());
+    let named = |head: &&ColumnHead| !head.name.is_empty() && !is_start_or_step(head);
     let mut columns = heads.iter().filter(named);
     let is_time = |head: &ColumnHead| {
         HORIZONTAL.contains(&name(head).as_str()) || alias::is_alias(Channel::T, head) || stated_unit(Channel::T, head).is_some()
@@ -71,7 +77,8 @@ fn is_input(head: &ColumnHead) -> bool {
     let is_number = |text: &str| !text.is_empty() && text.len() <= 2 && text.bytes().all(|byte| byte.is_ascii_digit());
     let is = |dimension: Dimension| {
         let stem = resemblance::words(split_header(&head.name, dimension).0).concat();
-        let is_end = |end: &str| is_number(end) || end.len() == 1 && LETTERS.contains(end);
+        // With the unit, as Rigol writes `CH1V`.
+        let is_end = |end: &str| is_number(end.trim_end_matches(['v', 'a'])) || end.len() == 1 && LETTERS.contains(end);
         is_number(&stem) || stem == "ampl" || INPUTS.iter().any(|input| stem.strip_prefix(input).is_some_and(is_end))
     };
     [Dimension::Voltage, Dimension::Current].into_iter().any(is)
@@ -84,7 +91,8 @@ fn waves(table: &mut Table, options: &ResolvedOptions) -> Option<[f64; 2]> {
     // The first one may have the unit of a time and no name: `in s`.
     let is_time = || heads.iter().position(|head| !head.name.is_empty()).filter(|index| stated_unit(Channel::T, &heads[*index]).is_some());
     let time = finder.index(Channel::T).ok()?.or_else(is_time)?;
-    let others: Vec<usize> = (0..heads.len()).filter(|index| *index != time && !heads[*index].name.is_empty()).collect();
+    let others: Vec<usize> =
+        (0..heads.len()).filter(|index| *index != time && !heads[*index].name.is_empty() && !is_start_or_step(&heads[*index])).collect();
     let is_one_group = heads.iter().all(|head| head.group == heads[time].group);
     if !(1..=MOST).contains(&others.len()) || !is_one_group || !others.iter().all(|index| is_voltage(&heads[*index])) {
         return None;

@@ -96,7 +96,7 @@ pub(super) const TIME: [&str; 22] = [
     "时间",
     "時間",
 ];
-pub(super) const SPEED: [&str; 26] = [
+pub(super) const SPEED: [&str; 28] = [
     "omega",
     "w",
     "speed",
@@ -121,6 +121,8 @@ pub(super) const SPEED: [&str; 26] = [
     "velocita",
     "velocidad",
     "winkelgeschwindigkeit",
+    "geschwindigkeit",
+    "geschwindigkeits",
     "转速",
     "回転数",
 ];
@@ -167,4 +169,4 @@ pub(super) const ANGLE: [&str; 13] = [
 
 /// German words for the axes: along the field and across it, of the field and of the torque.
 pub(super) const ALONG: [&str; 2] = ["laengs", "feldbildend"];
-pub(super) const ACROSS: [&str; 4] = ["quer", "momentenbildend", "drehmomentbildend", "drehmomentenbildend"];
+pub(super) const ACROSS: [&str; 5] = ["quer", "momentbildend", "momentenbildend", "drehmomentbildend", "drehmomentenbildend"];

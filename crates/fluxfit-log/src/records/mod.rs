@@ -13,8 +13,23 @@ use crate::{
 use fluxfit_files::FileError;
 
 /// Texts that are named, because they cannot be read.
-const OTHERS: [(&str, &str); 2] =
-    [("date ", "a Vector ASC log of CAN frames"), ("timestamp,arbitration_id,", "a log of CAN frames as CSV")];
+const OTHERS: [(&str, &str); 3] = [
+    ("date ", "a Vector ASC log of CAN frames"),
+    ("timestamp,arbitration_id,", "a log of CAN frames as CSV"),
+    (";$FILEVERSION=", "a trace of PEAK's PCAN-View (.trc) of CAN frames"),
+];
+
+/// Settings of Yokogawa's oscilloscopes above the samples, which have no times.
+const OF_YOKOGAWA: [&str; 3] = ["TraceName", "HResolution", "HOffset"];
+
+/// Whether a text begins with these.
+fn is_of_yokogawa(head: &str) -> bool {
+    let first = |line: &str| line.split(',').next().unwrap_or_default().trim_matches(['"', ' ', '\t']).to_owned();
+    let settings: Vec<String> = head.lines().take(LINES_OF_SETTINGS).map(first).collect();
+    OF_YOKOGAWA.iter().all(|wanted| settings.iter().any(|setting| setting == wanted))
+}
+
+const LINES_OF_SETTINGS: usize = 40;
 
 /// Names of the columns of CAN frames in a table, as SavvyCAN, PCAN and others write them: the identifier, the number of bytes, and these.
 const FRAMES: [&[&str]; 3] =
@@ -44,6 +59,9 @@ impl Records {
         let head = text.head.as_str();
         if let Some((_, what)) = OTHERS.iter().find(|(start, _)| head.starts_with(start) && (*start != "date " || head.contains("base "))) {
             return Err(Problem::CanLog { what }.into());
+        }
+        if is_of_yokogawa(head) {
+            return Err(Problem::Yokogawa.into());
         }
         if is_table_of_frames(head) {
             return Err(Problem::CanLog { what: "a log of CAN frames as CSV" }.into());
