@@ -165,6 +165,10 @@ pub(crate) enum Problem {
         "the times are rounded to {step}, and about {rows} rows have the same; do not remove them: write the time between rows into a mapping file, sample_period = \"{period}\""
     )]
     RoundedTime { rows: String, step: String, period: String },
+    #[error(
+        "the speed is computed from this angle, and nothing states whether it is electrical or that of the shaft; state its unit: rad, deg, rad-mech or deg-mech (with the number of pole pairs), or log the speed"
+    )]
+    AngleRotation,
     #[error("by its values this column is not the angle of the rotor; map theta_e to the angle, or log it")]
     NoAngle,
 
@@ -384,6 +388,7 @@ impl Problem {
             | Self::ElectricalSpeedUnit
             | Self::UnitOfTool { .. }
             | Self::SpeedRotation { .. }
+            | Self::AngleRotation
             | Self::Counts { .. }
             | Self::InverseSeconds { .. }
             | Self::TimeUnit { .. } => FileErrorKind::Unit,
@@ -481,6 +486,10 @@ impl Problem {
                 ["id", "iq", "ud", "uq"].map(|channel| Advice::StateUnit { channel, unit: Some("UNIT") }).to_vec()
             }
             Self::Modulation { channel, .. } => vec![Advice::StateUnit { channel, unit: Some("V") }],
+            Self::AngleRotation => {
+                let unit = |unit: Unit| Advice::StateUnit { channel: "theta_e", unit: Some(unit.name()) };
+                vec![unit(Unit::Radian), Advice::Together(vec![unit(Unit::RadianMechanical), Advice::StatePolePairs])]
+            }
             Self::TimeUnit { .. } => vec![Advice::StateUnit { channel: "t", unit: None }],
             Self::AngleTurn { scale, is_exact: true, .. } => vec![Advice::ScaleInMapping { channel: "theta_e", scale: scale.clone() }],
             Self::NoAngle => map(&["theta_e"]),

@@ -6,6 +6,7 @@ use super::{
     record::{self, lines},
     scope::{self, Export},
     tidy::RowStyle,
+    unit_names::UNITS,
 };
 use crate::{error::FileError, input, problem::Problem};
 use fluxfit_units::wording::{list, quote};
@@ -329,12 +330,6 @@ const NAMES_AND_UNITS: usize = 2;
 
 /// Lines of settings that make a preamble.
 const SETTINGS: usize = 3;
-
-/// What a row above the names that holds their units has in most of its cells.
-pub(super) const UNITS: [&str; 22] = [
-    "second", "volt", "ampere", "s", "ms", "us", "v", "mv", "kv", "a", "ma", "ka", "rpm", "krpm", "1/min", "min^-1", "rad/s", "rad", "deg",
-    "°", "nm", "hz",
-];
 
 /// Whether a line below a line with empty cells, and above the first row of numbers, has more names in it.
 fn is_above_names(line: &Header, text: &str) -> bool {

@@ -1,9 +1,9 @@
-//! Names above further lines that are neither names nor units alone: two levels of names, as pandas writes those of a MultiIndex, and what a
-//! simulator states of each signal (`Type: double`, `Unit: A`), a line for each.
+//! Names above further lines that are neither rows nor units alone: two levels of names, as pandas writes those of a MultiIndex, and what
+//! a simulator states of each signal (`Type: double`, `Unit: A`), a line for each.
 
 use super::{
-    header::{UNITS, is_number},
-    record::{first_record, lines},
+    record::{first_record, lines, number},
+    unit_names::UNITS,
 };
 
 /// Most lines between the names and the rows.
@@ -30,6 +30,10 @@ const TYPES: [&str; 22] = [
     "double", "single", "float", "float32", "float64", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "boolean",
     "bool", "real", "lreal", "int", "dint", "uint", "udint", "logical",
 ];
+
+fn is_number(cell: &str) -> bool {
+    number(cell.as_bytes(), b';', &mut String::new()).is_some()
+}
 
 /// The names of the columns, their units and where the rows begin.
 pub(super) struct Levels {

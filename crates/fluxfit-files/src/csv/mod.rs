@@ -6,3 +6,4 @@ mod levels;
 pub mod record;
 mod scope;
 pub mod tidy;
+mod unit_names;

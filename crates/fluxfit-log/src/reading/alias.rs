@@ -192,7 +192,9 @@ pub(super) fn is_alias(channel: Channel, head: &ColumnHead) -> bool {
 /// digit belongs to the name.
 pub(super) fn field(name: &str) -> &str {
     let name = name.trim().trim_matches(['<', '>', '"']);
-    let Some(at) = name.rfind(['.', '/', ':', '|', '\\']) else { return name };
+    // Those of a unit in brackets are its own: `Speed [1/s]`.
+    let end = if name.ends_with([']', ')']) { name.rfind(['[', '(']).unwrap_or(name.len()) } else { name.len() };
+    let Some(at) = name[..end].rfind(['.', '/', ':', '|', '\\']) else { return name };
     let last = name[at + 1..].trim();
     match last.to_lowercase().as_str() {
         "out1" | "in1" | "value" | "data" => field(&name[..at]),

@@ -1,4 +1,5 @@
-//! Speeds and angles in counts of an encoder, `[cnt/sec]`, and in `[1/s]`, which may be three things: what the file does not state is asked.
+//! Speeds and angles in counts of an encoder, `[cnt/sec]`, and in `[1/s]`, which may be three things: what the file does not state is
+//! asked.
 
 use crate::{channel::Channel, problem::Problem};
 use fluxfit_units::Dimension;

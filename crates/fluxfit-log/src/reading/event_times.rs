@@ -14,8 +14,8 @@ const FEWEST: usize = 30;
 /// Times that differ by less than this share of the usual step are the same.
 const SAME: f64 = 1e-6;
 
-/// Times that differ by less than this share of the mean step are the same where the currents are: of some solvers the row before an event is
-/// a little before it.
+/// Times that differ by less than this share of the mean step are the same where the currents are: of some solvers the row before an event
+/// is a little before it.
 const NEAR: f64 = 1e-3;
 
 /// Of what currents change by otherwise, at most this share is changed within an event: they go on through it, whatever the voltages do.

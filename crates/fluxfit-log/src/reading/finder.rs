@@ -321,8 +321,10 @@ impl Finder<'_> {
         let unit = self.unit(channel, head, unstated, notes)?;
         let is_unit_stated = unstated.len() == assumed && !(channel == T && unit == Unit::Second);
         let is_in_header = matches!(split_header(&head.name, channel.dimension()).1, HeaderUnit::Known(_)) || head.unit.is_some();
-        let is_unit_written =
-            is_in_header || self.options.unit(channel).is_some() || self.options.scale(channel) != 1.0 || unit != channel.unit();
+        let is_unit_written = is_in_header
+            || self.options.unit(channel).is_some()
+            || self.options.scale(channel) != 1.0
+            || unit != channel.unit() && unstated.len() == assumed;
         let (is_share, instants) = (is_given_share, None);
         Ok(ChosenColumn {
             channel,
@@ -543,8 +545,14 @@ impl Finder<'_> {
                 return Err(Problem::UnitOfTool { tool, unit }.into());
             }
             _ => {
-                unstated.push((channel, format!("{canonical} ('{}') in {}", shorten(name), si.prose())));
-                return Ok(si);
+                // By its name it is that of the shaft.
+                let is_of_shaft = dimension == Dimension::Angle && states_mechanical(name);
+                let unit = if is_of_shaft { Unit::RadianMechanical } else { si };
+                if is_of_shaft && self.options.pole_pairs.is_none() {
+                    return Err(needs_pole_pairs(channel, unit).into());
+                }
+                unstated.push((channel, format!("{canonical} ('{}') in {}", shorten(name), unit.prose())));
+                return Ok(unit);
             }
         };
         let is_alias = stated.is_none() && self.is_alias(channel, name);

@@ -73,11 +73,34 @@ pub(super) fn settle(channels: &mut Channels, chosen: &[ChosenColumn], notes: &m
     let size = |unit: &Unit| if column.is_unit_stated { 1.0 } else { unit.in_si() };
     // An angle of the shaft may wind around after a turn of the shaft.
     let of_shaft = if column.unit.is_mechanical() { f64::from(column.pole_pairs) } else { 1.0 };
+    // Where the speed tells that it is that of the shaft.
+    let of_stated_pairs = f64::from(column.pole_pairs);
+    let turns_with_shaft = |unit: &&Unit| {
+        let turns = |omega: &[f64]| turns_with(theta, omega, channels.get(T).unwrap_or_default(), size(unit) * of_stated_pairs);
+        is_open && column.pole_pairs > 1 && channels.get(OmegaE).is_some_and(turns)
+    };
     let fitting = units.iter().find(|unit| match channels.get(OmegaE) {
         Some(omega) => turns_with(theta, omega, channels.get(T).unwrap_or_default(), size(unit)),
         None => winds(theta, size(unit)) || winds(theta, size(unit) / of_shaft),
     });
+    if fitting.is_none()
+        && let Some(unit) = units.iter().find(turns_with_shaft)
+    {
+        let pole_pairs = column.pole_pairs;
+        notes.push(
+            format!("theta_e: column '{header}' read as the angle of the shaft, with {pole_pairs} pole pairs, as it turns; its zero must lie on the d axis").into(),
+        );
+        let electrical = theta.iter().map(|angle| angle * size(unit) * of_stated_pairs).collect();
+        channels.set(ThetaE, electrical);
+        return Ok(());
+    }
     if let Some(unit) = fitting {
+        // The speed is computed from it, and neither the phases nor the name tell whose angle it is.
+        let is_of_either = channels.get(OmegaE).is_none()
+            && [Channel::IA, Channel::IAlpha, Channel::UA].iter().all(|phase| channels.get(*phase).is_none());
+        if is_of_either && is_open {
+            return Err(FileError::from(Problem::AngleRotation).in_column(&column.header));
+        }
         let factor = size(unit);
         notes.push(format!("theta_e: column '{header}' read as {}, as it turns", unit.prose()).into());
         if factor != 1.0 {
@@ -91,8 +114,9 @@ pub(super) fn settle(channels: &mut Channels, chosen: &[ChosenColumn], notes: &m
         let span = turn(theta).filter(|span| !column.is_unit_written && round_turn(*span).is_some());
         return Err(FileError::from(span.map_or(Problem::NoAngle, |span| other_turn(column, span))).in_column(&column.header));
     }
-    let sentence =
-        format!("theta_e is left out: column '{header}' does not turn as fast as omega_e says; map theta_e to it if it is the angle");
+    let sentence = format!(
+        "theta_e is left out: column '{header}' does not turn as fast as omega_e says; if it is the angle of the shaft, state the number of pole pairs; map theta_e to it if it is that of the field"
+    );
     notes.push(Note::with_advice(sentence, Advice::MapColumns(vec![(ThetaE.name(), Some(column.header.clone()))])));
     channels.take(ThetaE);
     Ok(())

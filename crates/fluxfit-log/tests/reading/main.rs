@@ -13,6 +13,7 @@ mod characteristics;
 mod corpus;
 mod dialects;
 mod errors;
+mod exports;
 mod fixtures;
 mod layouts;
 mod optional_columns;
