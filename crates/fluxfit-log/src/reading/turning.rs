@@ -236,7 +236,7 @@ mod tests {
         let column = ChosenColumn {
             channel: ThetaE,
             index: 0,
-            header: "theta".to_owned(),
+            header: if with_speed { "theta" } else { "theta_el" }.to_owned(),
             unit: Unit::Radian,
             pole_pairs: 1,
             scale: 1.0,

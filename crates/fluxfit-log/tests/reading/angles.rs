@@ -2,6 +2,7 @@
 
 use crate::fixtures::map;
 use fluxfit_log::{LogOptions, parse_log};
+use fluxfit_units::Unit;
 use std::{f64::consts::TAU, fmt::Write};
 
 /// R_s in ohm, L_d and L_q in H, psi_f in Wb.
@@ -73,4 +74,59 @@ fn an_angle_in_other_units_is_told_by_the_phase_currents() {
         assert_eq!(notes, [expected]);
         assert!(far < 0.002, "{expected}: {far}");
     }
+}
+
+/// 4000 rows of a steady point in quantities of the rotor, at 300 electrical rad/s with four pole pairs; `speed` is a column of it, or none.
+fn of_rotor(angle: &str, of_shaft: bool, speed: Option<&str>) -> String {
+    let row = |row: u32| {
+        let t = f64::from(row) * 1e-4;
+        let turned = if of_shaft { (75.0 * t).rem_euclid(TAU) } else { (300.0 * t).rem_euclid(TAU) };
+        let speed = speed.map_or_else(String::new, |_| ",75".to_owned());
+        format!("{t:.4},-3.6,16.5,0,4,{turned}{speed}\n")
+    };
+    let speed = speed.map_or_else(String::new, |name| format!(",{name}"));
+    format!("t,ud,uq,id,iq,{angle}{speed}\n{}", (0..4000).map(row).collect::<String>())
+}
+
+/// A simulator writes the angle of the shaft beside dq currents, which do not tell it from that of the field.
+#[test]
+fn an_angle_that_alone_tells_the_speed_is_asked_whose_it_is() {
+    let four = |units: &[(&str, Unit)]| LogOptions {
+        units: units.iter().map(|(name, unit)| ((*name).to_owned(), *unit)).collect(),
+        pole_pairs: Some(4),
+        ..LogOptions::default()
+    };
+    let refusal = |text: &str, options: &LogOptions| parse_log("drive.csv", text.as_bytes(), options).unwrap_err().to_string();
+    for name in ["theta", "Machine.theta [rad]"] {
+        let sentence = refusal(&of_rotor(name, true, None), &LogOptions::default());
+        assert!(sentence.contains("electrical or that of the shaft"), "{sentence}");
+    }
+    let sentence = refusal(&of_rotor("theta_mech", true, None), &LogOptions::default());
+    assert!(sentence.contains("number of pole pairs"), "{sentence}");
+    let speed = |text: &str, options: &LogOptions| {
+        parse_log("drive.csv", text.as_bytes(), options).unwrap_or_else(|error| panic!("{error}")).log.columns().omega_e[2000]
+    };
+    for (text, options) in [
+        (of_rotor("theta_mech", true, None), four(&[])),
+        (of_rotor("theta", true, None), four(&[("theta_e", Unit::RadianMechanical)])),
+        (of_rotor("theta_el", false, None), LogOptions::default()),
+        (of_rotor("theta", false, None), LogOptions { units: vec![("theta_e".to_owned(), Unit::Radian)], ..LogOptions::default() }),
+    ] {
+        let found = speed(&text, &options);
+        assert!((found - 300.0).abs() < 1e-6, "{found} {}", text.lines().next().unwrap_or_default());
+    }
+    // The speed tells it, with the pole pairs.
+    let read = parse_log(
+        "drive.csv",
+        of_rotor("theta", true, Some("wm [rad/s]")).as_bytes(),
+        &four(&[("omega_e", Unit::RadianPerSecondMechanical)]),
+    );
+    let read = read.unwrap();
+    assert!(
+        read.notes.iter().any(|note| note.to_string().contains("read as the angle of the shaft, with 4 pole pairs, as it turns")),
+        "{:?}",
+        read.notes
+    );
+    let theta = read.log.columns().theta_e.clone().unwrap();
+    assert!((theta[100] - 3.0).abs() < 1e-9, "{}", theta[100]);
 }
