@@ -190,6 +190,10 @@ pub(crate) enum Problem {
         shorten(.header)
     )]
     DirectQuantity { header: String },
+    #[error(
+        "by its name the torque '{}' is computed by the drive from its currents, with its own setting of psi_f or of the torque constant, and tells nothing of the motor; map the torque of a sensor, or this one if a sensor measured it", shorten(.header)
+    )]
+    ComputedTorque { header: String },
     #[error("{}", mapped_unit(column, header, .of_row.as_deref()))]
     MappedUnit {
         column: &'static str,
@@ -378,6 +382,7 @@ impl Problem {
             | Self::LoadCurve { .. }
             | Self::NoTable
             | Self::DirectQuantity { .. }
+            | Self::ComputedTorque { .. }
             | Self::UnusedColumn { .. }
             | Self::MappedUnit { .. } => FileErrorKind::Columns,
             Self::HeaderUnit { .. }

@@ -184,6 +184,7 @@ pub(super) fn fit(channel: Channel, name: &str) -> Option<Fit> {
     // Of equal ones the first.
     fits.chain(of_bus(channel, &words))
         .chain(of_german(channel, &words))
+        .chain(of_power(channel, &words))
         .reduce(|best, next| if next.score > best.score { next } else { best })
 }
 
@@ -252,6 +253,17 @@ fn of_german(channel: Channel, words: &[String]) -> Option<Fit> {
     let around = name.replace(*axis, "|");
     let others = 1.0 - (STEPS * (axis.len() + quantity.len()) as f64 / name.len() as f64).round() / STEPS;
     Some(Fit { score: 1.0 - OTHER_WORDS * others, around })
+}
+
+/// How a name resembles a current by the power that it makes at the motor, as in Elmo's `Active Current [A]`, `Reactive Current [A]`.
+fn of_power(channel: Channel, words: &[String]) -> Option<Fit> {
+    let power = match channel {
+        Channel::Id => "reactive",
+        Channel::Iq => "active",
+        _ => return None,
+    };
+    let is_it = words.windows(2).any(|pair| pair[0] == power && pair[1] == "current");
+    (is_it && !says_reference(words)).then(|| Fit { score: 1.0 - OTHER_WORDS, around: "|current".to_owned() })
 }
 
 /// Whether a word is the number of a converter's parameter, as before a name in Siemens' tools: `r0076 Stromistwert feldbildend`.

@@ -30,6 +30,10 @@ const LETTERS: &str = "abcdefgh";
 /// What an oscilloscope calls its horizontal axis, and a number of the sample on it, where the time is not stated in so many words.
 const HORIZONTAL: [&str; 5] = ["x", "xaxis", "source", "sequence", "second"];
 
+/// What Rigol calls the number of a sample, and the time between two.
+const SAMPLE: &str = "X";
+const INCREMENT: &str = "Increment";
+
 /// Further columns of Rigol's traces: the time of the first sample, and that between two; as names alone, or with the number, `t0 = -6e-3`.
 const START_AND_STEP: [&str; 2] = ["start", "increment"];
 const START_AND_STEP_BEFORE: [&str; 2] = ["t0 =", "tInc ="];
@@ -90,7 +94,10 @@ fn waves(table: &mut Table, options: &ResolvedOptions) -> Option<[f64; 2]> {
     let finder = Finder { heads: &heads, unreadable: &[], lists: &[], first_cells: &Vec::new, passed_over: None, layout: None, options };
     // The first one may have the unit of a time and no name: `in s`.
     let is_time = || heads.iter().position(|head| !head.name.is_empty()).filter(|index| stated_unit(Channel::T, &heads[*index]).is_some());
-    let time = finder.index(Channel::T).ok()?.or_else(is_time)?;
+    // Rigol numbers the samples and has the time between them in the first row alone.
+    let called = |name: &str| heads.iter().position(|head| head.name.trim().eq_ignore_ascii_case(name));
+    let increment = called(INCREMENT).filter(|_| called(SAMPLE) == Some(0));
+    let time = finder.index(Channel::T).ok()?.or_else(is_time).or_else(|| increment.map(|_| 0))?;
     let others: Vec<usize> =
         (0..heads.len()).filter(|index| *index != time && !heads[*index].name.is_empty() && !is_start_or_step(&heads[*index])).collect();
     let is_one_group = heads.iter().all(|head| head.group == heads[time].group);
@@ -106,7 +113,7 @@ fn waves(table: &mut Table, options: &ResolvedOptions) -> Option<[f64; 2]> {
         is_optional: true,
         instants: instants.clone().filter(|_| index == time),
     };
-    let wanted: Vec<WantedColumn> = [time].into_iter().chain(others.iter().copied()).map(wanted).collect();
+    let wanted: Vec<WantedColumn> = [time].into_iter().chain(others.iter().copied()).chain(increment).map(wanted).collect();
     let mut values = vec![Vec::new(); wanted.len()];
     let full = || FileError::from(Problem::NoRows);
     // What comes behind is not needed, and what cannot be read is no wave.
@@ -114,11 +121,17 @@ fn waves(table: &mut Table, options: &ResolvedOptions) -> Option<[f64; 2]> {
         values.iter_mut().zip(&block.values).for_each(|(all, some)| all.extend(some));
         if values[0].len() < MOST_ROWS { Ok(()) } else { Err(full()) }
     });
+    let increment = increment.and_then(|_| values.pop());
+    let step = increment.map_or(Some(1.0), |of_rows| of_rows.into_iter().find(|step| *step > 0.0))?;
+    // That row has no samples.
+    let is_row = |row: usize| values.iter().all(|values| values[row].is_finite());
+    let rows: Vec<usize> = (0..values[0].len()).filter(|row| is_row(*row)).collect();
+    let values: Vec<Vec<f64>> = values.iter().map(|values| rows.iter().map(|row| values[*row]).collect()).collect();
     let (t, voltages) = values.split_first()?;
     let of_each = voltages.iter().zip(&others).map(|(voltage, index)| {
         let [turns, rms] = wave(t, voltage)?;
         let size = stated_unit(Channel::UDc, &heads[*index]).map_or(1.0, Unit::in_si);
-        Some([turns / unit.in_si(), rms * size])
+        Some([turns / (unit.in_si() * step), rms * size])
     });
     let of_each: Vec<[f64; 2]> = of_each.collect::<Option<_>>()?;
     let mean = |k: usize| of_each.iter().map(|wave| wave[k]).sum::<f64>() / of_each.len() as f64;
@@ -214,6 +227,22 @@ mod tests {
         }
         let in_thousandths = refusal("t [ms],CH1 [mV]", |t| vec![phase(1e-3 * t, 0.0)]);
         assert!(in_thousandths.contains("a trace of an oscilloscope"), "too few turns: {in_thousandths}");
+    }
+
+    /// As Rigol writes it, with the time between samples in the row below the names, or in the name of a column.
+    #[test]
+    fn samples_that_are_numbered_have_the_time_of_the_first_row() {
+        let samples = |row: &dyn Fn(u32) -> String| (0..4000).map(row).collect::<String>();
+        let of_ab = |k: u32| phase(f64::from(k) * 5e-5, 0.0);
+        let numbered = samples(&|k| format!("{k},{:.4},,\n", of_ab(k)));
+        let timed = samples(&|k| format!("{:.6},{:.4},,\n", f64::from(k) * 5e-5, of_ab(k)));
+        for text in [
+            format!("X,CH1,Start,Increment,\nSequence,Volt,-6.0e-03,5.0e-05\n{numbered}"),
+            format!("Time(s),CH1V,t0 = -6e-3, tInc = 5e-5,\n{timed}"),
+        ] {
+            let sentence = parse_log("scope.csv", text.as_bytes(), &LogOptions::default()).unwrap_err().to_string();
+            assert!(sentence.contains("53.20 Hz and 12.3"), "{sentence}");
+        }
     }
 
     #[test]

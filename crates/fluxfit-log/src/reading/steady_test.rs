@@ -19,6 +19,7 @@ use crate::{
     channel::Channel,
     header_unit::{HeaderUnit, split_header, unit_in_row},
     note::Note,
+    problem::Problem,
     quantity::{Quantity, TableColumn},
     unclear_table::UnclearTable,
 };
@@ -91,6 +92,7 @@ pub(super) fn read(table: &mut Table, columns: &[Found], stated: &Stated) -> Res
             refuse_unclear([torques.clone()].into_iter(), UnclearTable { axis_currents, ..UnclearTable::default() })?;
         }
         if let OfQ::Is(q) = of_q {
+            refuse_computed(torque)?;
             let d = axis_currents::of_d(&heads, columns, Some(q));
             return torque_of_current(table, &d, axis(q, &heads, columns), columns, torque).map(Some);
         }
@@ -117,6 +119,7 @@ pub(super) fn read(table: &mut Table, columns: &[Found], stated: &Stated) -> Res
             let current_and_torque = is_open.then(|| [current.header.clone(), torque.header.clone()]);
             let unclear = UnclearTable { current_and_torque, ..UnclearTable::default() };
             refuse_unclear([currents.clone(), torques.clone()].into_iter(), unclear)?;
+            refuse_computed(torque)?;
             let mut notes = Vec::new();
             let factor = current.in_si * convention(current, Quantity::Current, None, &mut notes) * SQRT_2;
             let d = axis_currents::of_d(&heads, columns, None);
@@ -127,6 +130,17 @@ pub(super) fn read(table: &mut Table, columns: &[Found], stated: &Stated) -> Res
         }
         _ => Ok(None),
     }
+}
+
+/// Words of a torque that a drive computes from its currents.
+const COMPUTED: [&str; 10] =
+    ["est", "estimate", "estimated", "estimation", "calc", "calculated", "computed", "berechnet", "berechnetes", "geschätzt"];
+
+/// Refuses a torque that is computed by its name, unless the user maps it.
+fn refuse_computed(torque: &Found) -> Result<(), FileError> {
+    let is_computed = words(&torque.header).iter().any(|word| COMPUTED.contains(&word.as_str()));
+    let problem = || Problem::ComputedTorque { header: torque.header.clone() };
+    if torque.mapped.is_none() && is_computed { Err(problem().into()) } else { Ok(()) }
 }
 
 /// A note on the speed beside a current and a torque that are mapped: with it, they are those of shorted terminals.
@@ -374,6 +388,16 @@ mod tests {
                 notes.len() == assumed.len() && notes.iter().zip(assumed).all(|(note, said)| note.contains(said)),
                 "{names}: {notes:?}"
             );
+        }
+    }
+
+    #[test]
+    fn a_torque_that_is_computed_by_its_name_is_refused() {
+        for header in ["torque_est [Nm]", "Motor Torque Estimate [Nm]", "Drehmoment berechnet [Nm]"] {
+            for current in ["iq [A]", "Current [Arms]"] {
+                let refusal = of(format!("{current},{header}\n3,1\n6,2.1\n9,3.1\n").leak(), None).unwrap_err().to_string();
+                assert!(refusal.contains("computed by the drive"), "{header}: {refusal}");
+            }
         }
     }
 
