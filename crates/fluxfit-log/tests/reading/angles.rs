@@ -76,7 +76,7 @@ fn an_angle_in_other_units_is_told_by_the_phase_currents() {
     }
 }
 
-/// 4000 rows of a steady point in quantities of the rotor, at 300 electrical rad/s with four pole pairs; `speed` is a column of it, or none.
+/// 4000 rows of a steady point in quantities of the rotor, at 300 electrical rad/s with four pole pairs; `speed` is a column, or none.
 fn of_rotor(angle: &str, of_shaft: bool, speed: Option<&str>) -> String {
     let row = |row: u32| {
         let t = f64::from(row) * 1e-4;
