@@ -13,6 +13,8 @@ mod bad_scenario;
 mod characteristics;
 #[path = "command/compare.rs"]
 mod compare;
+#[path = "command/computed_torque.rs"]
+mod computed_torque;
 #[path = "command/craft.rs"]
 mod craft;
 #[path = "command/edges.rs"]

@@ -516,12 +516,9 @@ fn all_that_is_unclear_of_a_table_is_asked_for_at_once() {
     let direct = table_of(folder.path(), "direct.csv", "U1 [V],U2 [V],I1 [A],I2 [A]", direct);
     let torques = (1..9).map(f64::from).map(|i| vec![i, 0.27 * i - 0.02, 0.28 * i - 0.02]);
     let torques = table_of(folder.path(), "torque.csv", "Iq [A],M1 [Nm],M2 [Nm]", torques);
+    let mapped = "speed=f [Hz],current=I_1 [A],torque=M1 [Nm]";
     for (table, said, options) in [
-        (
-            &shorted,
-            ["'I_1 [A]' and 'I_4 [A]'", "'M1 [Nm]' and 'M2 [Nm]'"],
-            "--map 'speed=f [Hz],current=I_1 [A],torque=M1 [Nm]' --pole-pairs N",
-        ),
+        (&shorted, ["'I_1 [A]' and 'I_4 [A]'", "'M1 [Nm]' and 'M2 [Nm]'"], &format!("--map '{mapped}' --pole-pairs N")[..]),
         (
             &direct,
             ["'U1 [V]' and 'U2 [V]'", "put 'll'"],
@@ -540,7 +537,7 @@ fn all_that_is_unclear_of_a_table_is_asked_for_at_once() {
         let run = fluxfit(&["inspect", table, "-o", mapping.to_str().unwrap()]);
         assert!(run.status == 2 && run.err.contains("takes no mapping file") && !mapping.exists(), "{}", run.err);
     }
-    for (table, map) in [(&shorted, "speed=f [Hz],current=I_1 [A],torque=M1 [Nm]"), (&torques, "torque=M1 [Nm]")] {
+    for (table, map) in [(&shorted, mapped), (&torques, "torque=M1 [Nm]")] {
         let (status, document) = json(&["identify", table, "--pole-pairs", "3", "--map", map]);
         assert!(status < 2 && !document["parameters"]["psi_f"]["value"].is_null(), "{document}");
         assert_eq!(fluxfit(&["inspect", table, "--pole-pairs", "3", "--map", map]).status, 0);
@@ -548,20 +545,6 @@ fn all_that_is_unclear_of_a_table_is_asked_for_at_once() {
     // What is mapped to channels of a log is read as one.
     let run = fluxfit(&["identify", &torques, "--map", "ud=M1 [Nm]"]);
     assert!(run.status == 2 && run.err.contains("are missing"), "{}", run.err);
-}
-
-/// A drive that logs a torque multiplies the current with its own setting.
-#[test]
-fn a_torque_that_the_drive_computes_is_no_measurement() {
-    let folder = tempfile::tempdir().unwrap();
-    let rows = |drag: f64| (1..15).map(f64::from).map(move |i| vec![i, 0.2731 * i - drag]);
-    let computed = table_of(folder.path(), "drive.csv", "q_A,torque_Nm", rows(0.0));
-    let run = fluxfit(&["identify", &computed, "--pole-pairs", "4"]);
-    assert!(run.status == 2 && run.err.contains("exactly but for rounding"), "{}", run.err);
-    let inspected = fluxfit(&["inspect", &computed]);
-    assert!(inspected.status == 2 && inspected.err.contains("exactly but for rounding"), "{}", inspected.err);
-    let measured = table_of(folder.path(), "bench.csv", "q_A,torque_Nm", rows(0.02));
-    assert!(fluxfit(&["identify", &measured, "--pole-pairs", "4"]).status < 2);
 }
 
 /// What a refusal or an answer says to map is read so: line to line the flux is 60 mWb, and of a phase sqrt 3 times as much; in series the

@@ -18,7 +18,8 @@ const SAME: f64 = 1e-6;
 /// is a little before it.
 const NEAR: f64 = 1e-3;
 
-/// Of what currents change by otherwise, at most this share is changed within an event: they go on through it, whatever the voltages do.
+/// Of what currents change by otherwise, at most this share is changed within an event: they go on through it, whatever voltages do. What
+/// a drive has sampled changes within events alone, and is held from one to the next.
 const CONTINUED: f64 = 1e-3;
 
 /// Fewest events of which that is believed.
@@ -59,7 +60,8 @@ fn of_some_rows(t: &[f64]) -> Option<Vec<bool>> {
     (!is_recorder && left_out <= MOST * t.len() as f64).then_some(kept)
 }
 
-/// Which rows to keep where currents and speed are those of the row behind, as no other two rows have them: however many there are.
+/// Which rows to keep where currents and speed go on through the rows of one time, or are held from these to the next: however many there
+/// are. Of two samples whose time was rounded they do neither.
 fn of_continued_currents(channels: &Channels, t: &[f64]) -> Option<Vec<bool>> {
     let mean_step = (t[t.len() - 1] - t[0]) / (t.len() - 1) as f64;
     let kept = kept(t, NEAR * mean_step);
@@ -69,8 +71,13 @@ fn of_continued_currents(channels: &Channels, t: &[f64]) -> Option<Vec<bool>> {
         pairs.map(|(pair, _)| (pair[1] - pair[0]).abs()).fold(0.0, |sum: f64, change| sum + change)
     };
     let mut currents = channels.iter().filter(|(channel, _)| CONTINUOUS.contains(channel)).map(|(_, values)| values);
-    let moves = channels.iter().any(|(channel, values)| channel.dimension() == Dimension::Current && changes(values, false) > 0.0);
-    let is_continued = currents.all(|values| changes(values, true) <= CONTINUED * changes(values, false));
+    let both = |values: &[f64]| [changes(values, true), changes(values, false)];
+    let is_moved = |values: &[f64]| both(values).iter().any(|change| *change > 0.0);
+    let moves = channels.iter().any(|(channel, values)| channel.dimension() == Dimension::Current && is_moved(values));
+    let is_continued = currents.all(|values| {
+        let [within, between] = both(values);
+        within <= CONTINUED * between || between <= CONTINUED * within
+    });
     (left_out >= FEWEST_EVENTS && moves && is_continued).then_some(kept)
 }
 
@@ -119,6 +126,17 @@ mod tests {
             assert!(channels.get(Channel::T).unwrap().iter().enumerate().all(|(row, t)| (t - row as f64 * 1e-4).abs() < 1e-15));
             assert_eq!(channels.get(Channel::Ud).unwrap()[..2], [1.0, 2.0]);
         }
+    }
+
+    /// A drive's own samples jump at the event at which they are taken, and are held from there.
+    #[test]
+    fn sampled_currents_are_held_between_events() {
+        let both = |of: &dyn Fn(usize) -> f64| (0..200).map(of).collect::<Vec<f64>>();
+        let t = both(&|row| (row / 2) as f64 * 1e-4);
+        let columns = vec![(Channel::T, t), (Channel::Iq, both(&|row| (0.3 * row.div_ceil(2) as f64).sin()))];
+        let mut channels = Channels { columns, ..Channels::default() };
+        assert!(settle(&mut channels).is_some());
+        assert!((channels.get(Channel::Iq).unwrap()[3] - 1.2_f64.sin()).abs() < 1e-15);
     }
 
     /// The currents differ within them as from one to the next.

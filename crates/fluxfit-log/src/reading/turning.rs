@@ -102,7 +102,8 @@ pub(super) fn settle(channels: &mut Channels, chosen: &[ChosenColumn], notes: &m
             return Err(FileError::from(Problem::AngleRotation).in_column(&column.header));
         }
         let factor = size(unit);
-        notes.push(format!("theta_e: column '{header}' read as {}, as it turns", unit.prose()).into());
+        let own = if column.unit.is_mechanical() && !unit.is_mechanical() { unit.of_shaft() } else { *unit };
+        notes.push(format!("theta_e: column '{header}' read as {}, as it turns", own.prose()).into());
         if factor != 1.0 {
             let scaled = theta.iter().map(|angle| angle * factor).collect();
             channels.set(ThetaE, scaled);

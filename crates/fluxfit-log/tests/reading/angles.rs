@@ -115,6 +115,8 @@ fn an_angle_that_alone_tells_the_speed_is_asked_whose_it_is() {
         let found = speed(&text, &options);
         assert!((found - 300.0).abs() < 1e-6, "{found} {}", text.lines().next().unwrap_or_default());
     }
+    let of_shaft = parse_log("drive.csv", of_rotor("theta_mech", true, None).as_bytes(), &four(&[])).unwrap();
+    assert!(of_shaft.notes.iter().any(|note| note.to_string().contains("read as mechanical rad, as it turns")), "{:?}", of_shaft.notes);
     // The speed tells it, with the pole pairs.
     let read = parse_log(
         "drive.csv",
