@@ -80,6 +80,28 @@ fn a_q_current_beside_a_torque_is_torque_against_current() {
     assert_eq!(of(&log, &LogOptions::default()), Ok(None));
 }
 
+/// All of such a current would be i_q, or that of shorted terminals. Beside the axes it is one more column.
+#[test]
+fn a_current_with_its_angle_is_not_i_q() {
+    let rows = "2,0,1,500\n4,20,2,1000\n6,40,2.5,2000\n8,50,3,3000\n";
+    for names in ["Is [Arms],beta [deg],T [Nm],x", "I [A rms],gamma,T [Nm],n [rpm]", "Is_pk [A],phase advance [deg],x,n [rpm]"] {
+        let refusal = of(&format!("{names}\n{rows}"), &LogOptions::default()).unwrap_err().to_string();
+        assert!(refusal.contains("lengths and angles of vectors"), "{names}: {refusal}");
+    }
+    assert_eq!(torques(&format!("iq [A],beta [deg],T [Nm],Is [A]\n{rows}"), &LogOptions::default()).0, [0.0, 8.0]);
+}
+
+/// A limit beside the voltage is not another one of it.
+#[test]
+fn a_maximum_is_an_amplitude_where_it_stands_alone() {
+    let last = |names: &str| match of(&format!("{names}\n100,10,9\n200,20,9\n300,30,9\n"), &LogOptions::default()).unwrap().unwrap().table {
+        Characteristic::OpenCircuit(table) => table.rows[2].voltage,
+        other => panic!("{other:?}"),
+    };
+    assert!((last("n [rpm],U_ll_max [V],x") - 30.0 * 0.5_f64.sqrt()).abs() < 1e-12);
+    assert_eq!(last("n [rpm],U_ll [V],U_max [V]"), 30.0);
+}
+
 #[test]
 fn no_column_of_i_d_is_passed_over_without_a_word() {
     let of = |d: &str, mapped: &[&str]| torques(&format!("speed,Test motor q-axis current,M [Nm],{d}\n{ROWS}"), &map(mapped));

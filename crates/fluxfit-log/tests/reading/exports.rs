@@ -113,6 +113,14 @@ fn counts_and_one_over_seconds_are_asked_for() {
     assert_same(&log_of(plain("t,ud,uq,id,iq,Speed [1/s]").as_bytes(), &stated), &expected(), "1/s");
 }
 
+/// Elmo calls the currents by the power that they make.
+#[test]
+fn active_and_reactive_currents_are_proposed() {
+    let sentence = refusal(plain("t,ud,uq,Reactive Current [A],Active Current [A],omega_e").as_bytes(), &LogOptions::default());
+    let proposed = "'Reactive Current [A]' may be id and 'Active Current [A]' may be iq";
+    assert!(sentence.contains(proposed), "{sentence}");
+}
+
 #[test]
 fn a_length_and_an_angle_are_not_the_axes() {
     let text = "n [rpm],Is [A],beta [deg],Ud [V],Uq [V]\n500,2,0,1,2\n500,3,20,1,2\n1000,4,40,1,2\n1000,5,0,2,4\n";
