@@ -64,8 +64,11 @@ fn of_some_rows(t: &[f64]) -> Option<Vec<bool>> {
 /// are. Of two samples whose time was rounded they do neither.
 fn of_continued_currents(channels: &Channels, t: &[f64]) -> Option<Vec<bool>> {
     let mean_step = (t[t.len() - 1] - t[0]) / (t.len() - 1) as f64;
+    // Most logs have none.
+    if t.windows(2).filter(|pair| is_same(pair, NEAR * mean_step)).take(FEWEST_EVENTS).count() < FEWEST_EVENTS {
+        return None;
+    }
     let kept = kept(t, NEAR * mean_step);
-    let left_out = kept.iter().filter(|kept| !**kept).count();
     let changes = |values: &[f64], within: bool| {
         let pairs = values.windows(2).zip(&kept).filter(|(_, kept)| **kept != within);
         pairs.map(|(pair, _)| (pair[1] - pair[0]).abs()).fold(0.0, |sum: f64, change| sum + change)
@@ -78,12 +81,16 @@ fn of_continued_currents(channels: &Channels, t: &[f64]) -> Option<Vec<bool>> {
         let [within, between] = both(values);
         within <= CONTINUED * between || between <= CONTINUED * within
     });
-    (left_out >= FEWEST_EVENTS && moves && is_continued).then_some(kept)
+    (moves && is_continued).then_some(kept)
 }
 
 /// Whether the row behind each row is later by more than this.
 fn kept(t: &[f64], same: f64) -> Vec<bool> {
-    t.windows(2).map(|pair| !(0.0..=same).contains(&(pair[1] - pair[0]))).chain([true]).collect()
+    t.windows(2).map(|pair| !is_same(pair, same)).chain([true]).collect()
+}
+
+fn is_same(pair: &[f64], same: f64) -> bool {
+    (0.0..=same).contains(&(pair[1] - pair[0]))
 }
 
 #[cfg(test)]
