@@ -30,8 +30,12 @@ struct CellUnit {
 
 /// The text with numbers in the place of such cells, if all cells of some columns are such; their units are those of the columns.
 pub(super) fn without_units(text: Text, header: &mut Header) -> Text {
-    let rows = text.head[header.body.min(text.head.len())..].lines().filter(|line| !line.trim().is_empty());
-    let mut table: Vec<Vec<String>> = rows.take(ROWS).map(|line| first_record(line, header.separator).0).collect();
+    let rows = || text.head[header.body.min(text.head.len())..].lines().filter(|line| !line.trim().is_empty()).take(ROWS);
+    // Most logs are of numbers alone, and their rows are passed over at once.
+    if !rows().any(has_unit) {
+        return text;
+    }
+    let mut table: Vec<Vec<String>> = rows().map(|line| first_record(line, header.separator).0).collect();
     // The head may end within the last one.
     if table.len() > 2 {
         table.pop();
@@ -62,6 +66,11 @@ pub(super) fn without_units(text: Text, header: &mut Header) -> Text {
         text.changed(header.body, |rows| Box::new(Numbers { rows, separator, units, line: Vec::new(), changed: Vec::new(), passed: 0 }));
     text.notes.push("cells have their units beside the numbers, and are read in these".to_owned());
     text
+}
+
+/// Whether anything in a line may be a unit: a letter other than that of an exponent, or a sign.
+fn has_unit(line: &str) -> bool {
+    line.bytes().any(|byte| byte == b'%' || !byte.is_ascii() || byte.is_ascii_alphabetic() && !b"eE".contains(&byte))
 }
 
 /// The digits and the exponent of the number at the beginning of a cell, and the unit behind it.

@@ -498,8 +498,10 @@ fn with_faults(start: &FaultSearch, observer: Option<&FaultTrial>) -> Searched {
     let mut ruled_out = Vec::new();
     let mut best = Attempt::of(start, &ruled_out, observer);
     let mut in_doubt = best.in_doubt;
+    // What a search begins with no other search of the same beginning is without.
+    let is_begun_with = |fault: Fault| start.begun_with.iter().any(|begun| begun.fault == fault);
     for _ in 0..MOST_RULED_OUT {
-        let Some(fault) = in_doubt else { break };
+        let Some(fault) = in_doubt.filter(|fault| !is_begun_with(*fault)) else { break };
         ruled_out.push(fault);
         let attempt = Attempt::of(start, &ruled_out, observer);
         in_doubt = attempt.in_doubt;
